@@ -15,47 +15,29 @@ MODULES = {
     for file in (PACKAGE / "components").rglob("*")
     if "__pycache__" not in file.parts and file.stem.startswith(tuple(COMPONENTS))
 }
-ASKING = PACKAGE / "thesis" / "names.py"
-"""What a user's script would name: the report asks shipped systems by the names in this file."""
-FILES = sorted(
-    f
-    for f in PACKAGE.rglob("*.py")
-    if "components" not in f.relative_to(PACKAGE).parts and f != ASKING
-)
-
-
-def explanations(tree: ast.AST) -> set[int]:
-    """Strings that are statements: docstrings."""
-    return {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+FILES = sorted(f for f in PACKAGE.rglob("*.py") if "components" not in f.relative_to(PACKAGE).parts)
 
 
 def naming(source: str) -> list[str]:
     """Line and text of every string or import that names a component."""
-    tree = ast.parse(source)
-    docs = explanations(tree)
     found = []
-    for node in ast.walk(tree):
+    for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.ImportFrom):
             module = node.module or ""
             names = {module, *(f"{module}.{alias.name}" for alias in node.names)}
             found += [f"{node.lineno}: import of {name}" for name in sorted(names & MODULES)]
         elif isinstance(node, ast.Import):
             found += [f"{node.lineno}: {a.name}" for a in node.names if a.name in MODULES]
-        elif (
-            isinstance(node, ast.Constant)
-            and isinstance(node.value, str)
-            and id(node) not in docs
-            and NAME.search(node.value)
-        ):
-            found.append(f"{node.lineno}: {node.value!r}")
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            found += [f"{node.lineno}: {name}" for name in NAME.findall(node.value)]
     return found
 
 
 def test_what_is_found():
-    """The test sees names in texts, formatted texts and imports, and no docstrings."""
+    """The test sees names in docstrings, texts, formatted texts and imports."""
     name, module = next(iter(COMPONENTS)), sorted(MODULES)[0]
     seen = f'"""{name}"""\nx = "a.{name}.b"\ny = f"{{x}}{name}.w"\nfrom {module} import Z\n'
-    assert len(naming(seen)) == 3
+    assert len(naming(seen)) == 4
     assert {m.rpartition(".")[2] for m in MODULES} >= set(COMPONENTS)
     assert not naming(f'x = "{name}s, {name}_2"')
 

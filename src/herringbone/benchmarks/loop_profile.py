@@ -24,7 +24,7 @@ from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.run import Run
 from herringbone.cosim.simulation import make_grid, ready
 from herringbone.cosim.structure.system import System
-from herringbone.running.coupled import Asked
+from herringbone.running.coupling_choice import Asked
 from herringbone.running.loading import open_parts
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.steps.for_tolerance import for_tolerance

@@ -76,48 +76,67 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
     Raises:
         HerringboneError: something about the options is wrong, or the export fails.
     """
-    from herringbone.core import ParameterError  # noqa: PLC0415
-    from herringbone.cosim.structure.system_file import short_name  # noqa: PLC0415
-    from herringbone.running.exporting.export import export_ssp, fmu_file_name  # noqa: PLC0415
-    from herringbone.running.exporting.system_fmu import export_fmu  # noqa: PLC0415
-
-    name = short_name(options.system)
+    _check(options)
     if options.output:
         check_writable(options.output.parent, options.output)
-    platforms, files = chosen_platforms(options), files_of_parts(options)
+    return _one_fmu(options, values) if options.as_fmu else _ssp_file(options, values)
+
+
+def _check(options: argparse.Namespace) -> None:
+    """Refuse options that belong to the other kind of file."""
+    from herringbone.core import ParameterError  # noqa: PLC0415
+
     if options.as_fmu:
         if options.step is not None:
             raise ParameterError("--step belongs to .ssp files; an FMU takes any step")
         if options.nested or options.python:
             raise ParameterError("--nested and --python belong to .ssp files; leave out --as-fmu")
-        lines, scene = _planned(options, values) if options.plan else ([], options.scene)
-        file = export_fmu(
-            options.system,
-            options.output or Path(fmu_file_name(name, options.fmi)),
-            outside=options.outside,
-            scene=scene,
-            values=values,
-            **files,
-            platforms=platforms,
-            fmi=options.fmi,
-            wanted=_wanted(options),
-        )
-        return [*lines, str(file), *untested(platforms)]
+        return
     if options.plan:
         raise ParameterError("--plan: a leaner model is one FMU; add --as-fmu")
     if options.outside or options.fmi != 2 or _wanted(options) != Wanted():
         raise ParameterError(
             "--outside, --fmi, flanges and variables belong to one FMU; add --as-fmu"
         )
-    if platforms and options.python:
+    if options.platforms and options.python:
         raise ParameterError("--platforms chooses among native FMUs; leave out --python")
+
+
+def _one_fmu(options: argparse.Namespace, values: Mapping[str, float | str]) -> list[str]:
+    """The whole system as one FMU."""
+    from herringbone.cosim.structure.system_file import short_name  # noqa: PLC0415
+    from herringbone.running.exporting.export import fmu_file_name  # noqa: PLC0415
+    from herringbone.running.exporting.system_fmu import export_fmu  # noqa: PLC0415
+
+    platforms = chosen_platforms(options)
+    lines, scene = _planned(options, values) if options.plan else ([], options.scene)
+    file = export_fmu(
+        options.system,
+        options.output or Path(fmu_file_name(short_name(options.system), options.fmi)),
+        outside=options.outside,
+        scene=scene,
+        values=values,
+        **files_of_parts(options),
+        platforms=platforms,
+        fmi=options.fmi,
+        wanted=_wanted(options),
+    )
+    return [*lines, str(file), *untested(platforms)]
+
+
+def _ssp_file(options: argparse.Namespace, values: Mapping[str, float | str]) -> list[str]:
+    """An FMU for each part, and how they are connected."""
+    from herringbone.cosim.structure.system_file import short_name  # noqa: PLC0415
+    from herringbone.running.exporting.export import export_ssp  # noqa: PLC0415
+
+    platforms = chosen_platforms(options)
     file = export_ssp(
         options.system,
-        options.output or Path(f"{name}.ssp"),
+        options.output or Path(f"{short_name(options.system)}.ssp"),
         scene=options.scene,
         step=options.step,
         values=values,
-        **files,
+        **files_of_parts(options),
         native=not options.python,
         platforms=platforms,
         nested=options.nested,

@@ -3,7 +3,7 @@
 import argparse
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
@@ -18,6 +18,8 @@ from herringbone.core.places.files import write_whole
 
 if TYPE_CHECKING:
     from herringbone.analysis.stability.atlas import Panel
+    from herringbone.cosim.algorithms import Algorithm
+    from herringbone.running.foreign.predictable import Predictable
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -74,20 +76,10 @@ def _predicted(
     """What is predicted, of one step or of all; the panels of an atlas are added."""
     from tqdm import tqdm  # noqa: PLC0415
 
-    from herringbone.analysis.stability import limits as analysis  # noqa: PLC0415
-    from herringbone.analysis.stability import report  # noqa: PLC0415
-    from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
-    from herringbone.analysis.stability.steps.step_verdict import step_verdicts  # noqa: PLC0415
-    from herringbone.cosim.algorithms import LI, parse_algorithm, refuse_adaptive  # noqa: PLC0415
-    from herringbone.running.foreign.surrogates import (  # noqa: PLC0415
-        opened_surrogates,
-        turned_back,
-        under_load,
-        without_missing,
-    )
-    from herringbone.running.known_limits import KnownLimits  # noqa: PLC0415
+    from herringbone.cosim.algorithms import parse_algorithm, refuse_adaptive  # noqa: PLC0415
+    from herringbone.running.foreign.predictable import predictable  # noqa: PLC0415 (numba)
     from herringbone.running.operating.commanded import operated  # noqa: PLC0415
-    from herringbone.running.prepared import Wishes, prepared  # noqa: PLC0415 (numba)
+    from herringbone.running.prepared import Wishes  # noqa: PLC0415
     from herringbone.scenes import Start  # noqa: PLC0415
 
     algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
@@ -100,45 +92,59 @@ def _predicted(
         replace_parts=replacements(options),
     )
     wishes = operated(options.system, options.scene, wishes, **operating_point(options))
-    trials = LI().start_step
-    started, scene, notes = prepared(options.system, options.scene, wishes, trial_step=trials)
-    for note in notes:
-        tell(note)
-    started = under_load(started)
-    structure = turned_back(started)
     bar = tqdm(unit=" matrices", disable=None)
-    with bar, opened_surrogates(structure, trials) as foreign:
-        structure, missing = without_missing(structure, foreign)
-        started, _ = without_missing(started, foreign)
-        for line in missing:
-            tell(line)
-        if foreign.strangers and options.atlas:
-            raise ParameterError("--atlas takes no foreign FMUs; leave it out")
 
-        def show(algorithm: str) -> None:
-            bar.set_description(algorithm, refresh=False)
-            bar.update()
+    def show(algorithm: str) -> None:
+        bar.set_description(algorithm, refresh=False)
+        bar.update()
 
+    with bar, predictable(options.system, options.scene, wishes, tell) as found:
         if options.step is not None:
-            chosen = algorithms or analysis.default_algorithms()
-            verdicts = step_verdicts(structure, chosen, options.step, show, foreign.strangers)
-            lines = [line for verdict in verdicts for line in verdict.lines()]
-            return Told("\n".join(lines), [{**asdict(v), "stable": v.stable} for v in verdicts])
-        found = analysis.stability(
-            structure,
-            scene.name,
-            algorithms,
-            tolerance=options.tolerance,
-            simulate=options.simulate,
-            progress=show,
-            strangers=foreign.strangers,
-            started=started,
-            remember=KnownLimits(started, trials),
-        )
-        found = replace(found, notes=(*missing, *found.notes))
-        if options.atlas:
-            panels += atlas(structure, progress=show)
-            found = replace(found, notes=(*found.notes, *unscaled(structure)))
+            return _of_step(found, algorithms, options.step, show)
+        return _of_all_steps(found, algorithms, options, panels, show)
+
+
+def _of_step(
+    of: "Predictable", algorithms: Sequence["Algorithm"], step: float, show: Callable[[str], None]
+) -> Told:
+    """What happens at one step [s], by algorithm."""
+    from herringbone.analysis.stability.limits import default_algorithms  # noqa: PLC0415
+    from herringbone.analysis.stability.steps.step_verdict import step_verdicts  # noqa: PLC0415
+
+    chosen = algorithms or default_algorithms()
+    verdicts = step_verdicts(of.system, chosen, step, show, of.strangers)
+    lines = [line for verdict in verdicts for line in verdict.lines()]
+    return Told("\n".join(lines), [{**asdict(v), "stable": v.stable} for v in verdicts])
+
+
+def _of_all_steps(
+    of: "Predictable",
+    algorithms: Sequence["Algorithm"],
+    options: argparse.Namespace,
+    panels: list["Panel"],
+    show: Callable[[str], None],
+) -> Told:
+    """Stable steps, bonds and a recommendation; see `_predicted`."""
+    from herringbone.analysis.stability import limits, report  # noqa: PLC0415
+    from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
+
+    if of.strangers and options.atlas:
+        raise ParameterError("--atlas takes no foreign FMUs; leave it out")
+    found = limits.stability(
+        of.system,
+        of.scene,
+        algorithms,
+        tolerance=options.tolerance,
+        simulate=options.simulate,
+        progress=show,
+        strangers=of.strangers,
+        started=of.started,
+        remember=of.known,
+    )
+    found = replace(found, notes=(*of.missing, *found.notes))
+    if options.atlas:
+        panels += atlas(of.system, progress=show)
+        found = replace(found, notes=(*found.notes, *unscaled(of.system)))
     return Told(report.stability_text(found), report.stability_summary(found))
 
 

@@ -178,7 +178,7 @@ def activity(what: str, note: str = "", *, shown: bool = False) -> Iterator[None
     said is not said as well.
 
     Args:
-        what: such as "building the native FMU of gear_mesh"; its duration is remembered by it.
+        what: such as "building the FMU of NAME"; its duration is remembered by it.
         note: how often it is done, such as "once".
         shown: something else shows that it goes on, and nothing is said.
     """

@@ -1,28 +1,19 @@
-"""One run: the compiled loop in chunks, how it ends, and the record."""
+"""One run: the compiled loop in chunks, and the record."""
 
-import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from herringbone.core import FmuError, Outcome, OutcomeKind
-from herringbone.core.energy_report import Verdict
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.checkpoint.checkpoints import Checkpoints
-from herringbone.cosim.divergence import broken_output, diverged
+from herringbone.cosim.ending import REFUSED, Ending
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs
-from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT
-from herringbone.cosim.loops.common import (
-    COUPLING_FAILED,
-    DONE,
-    NOT_FINITE,
-    PART_FAILED,
-    get_all,
-)
+from herringbone.cosim.loops.common import DONE, get_all
 from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
@@ -33,15 +24,6 @@ from herringbone.cosim.wrapped_angles import wrapped_angles
 
 CHUNK_SECONDS = 0.05
 """Wall time between looks at the interrupt flag, as long as the cost of a step stays the same."""
-
-_PROBLEMS = {
-    COUPLING_FAILED: OutcomeKind.COUPLING_FAILED,
-    STEP_LIMIT: OutcomeKind.STEP_LIMIT,
-}
-_REFUSED = -1
-"""Status of a run in which a part refuses a value of another type than real."""
-_BEGUN = 8
-"""Macro steps of which nobody can say whether something has grown."""
 Progress = Callable[[float, float], None]
 """Called with the simulated time reached and its end [s]."""
 
@@ -57,6 +39,9 @@ class Run:
         notes: on how signals travel.
         others: signals of other types than real.
         streaming: where rows go while it goes on; None: they stay in memory.
+
+    Attributes:
+        refusal: what a part said that refused a value of another type than real.
     """
 
     def __init__(
@@ -71,7 +56,7 @@ class Run:
     ) -> None:
         self.network, self.prepared, self.watch, self.notes = network, prepared, watch, notes
         self.others = others
-        self._refusal = ""
+        self.refusal = ""
         self.grid = grid = prepared.grid(grid)
         self.rows = RunRows(network, prepared, grid, others, streaming)
         self.record = self.rows.record
@@ -126,7 +111,7 @@ class Run:
         wall, cpu = time.perf_counter() - begin, time.thread_time() - worked
         if status == DONE and done < self.grid.count:
             checkpoints.take(done, wall)
-        outcome = self._outcome(done, status, culprit)
+        outcome = Ending(self, done).outcome(status, culprit)
         return self._recording(done, outcome, wall, cpu)
 
     def _first_row(self) -> None:
@@ -147,8 +132,8 @@ class Run:
             if self.others.connected and done < self.grid.count:
                 self.others.exchange()
         except FmuError as error:
-            self._refusal = str(error)
-            return _REFUSED
+            self.refusal = str(error)
+            return REFUSED
         return DONE
 
     def _correct_start(self) -> None:
@@ -169,92 +154,6 @@ class Run:
         )  # fmt: skip
         return self.prepared.run(self.history, chunk)
 
-    def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
-        reached = done * self.grid.step
-        if status == DONE:
-            if done == self.grid.count:
-                return self._outcome_at_end(reached)
-            return Outcome.interrupted(reached)
-        if status == _REFUSED:
-            message = f"{self._refusal}, at {reached:g} s"
-            return Outcome(OutcomeKind.PART_FAILED, reached, self.others.asked, message)
-        if (end := self._ended(status, culprit)) is not None:
-            return Outcome(end.kind, max(end.time, reached), end.culprit, end.message)
-        return self._failure(done, status, culprit)
-
-    def _failure(self, done: int, status: int, culprit: int) -> Outcome:
-        """A part refused its step, or its values have diverged."""
-        reached = done * self.grid.step
-        if (broken := broken_output(self.network)) is not None:
-            return self._not_finite(done, broken)
-        if status in _PROBLEMS:
-            return Outcome(_PROBLEMS[status], reached, self.prepared.culprit, self.prepared.problem)
-        part = self.network.parts[culprit]
-        part.failed()
-        said = "; ".join(part.messages())
-        where, value = diverged(self.network, culprit)
-        if where and not math.isfinite(value):
-            return self._not_finite(done, where)
-        if status == NOT_FINITE or where:
-            return self._diverged(done, where or part.name, "grows beyond all bounds")
-        message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
-        return Outcome(OutcomeKind.PART_FAILED, reached, part.name, message)
-
-    def _not_finite(self, done: int, where: str) -> Outcome:
-        """A value is not finite: the part's doing, unless something has grown before."""
-        reached, how = done * self.grid.step, "is not finite"
-        if self.rows.are_sudden(done):
-            why = ", and nothing has grown before"
-        elif done <= _BEGUN:
-            why = (
-                ", as soon as the run has begun: look into that part and its start values, or use "
-                "a shorter step"
-            )
-        else:
-            return self._diverged(done, where, how)
-        message = f"{where} {how} at {reached:g} s{why}"
-        return Outcome(OutcomeKind.PART_FAILED, reached, where, message)
-
-    def _diverged(self, done: int, where: str, how: str) -> Outcome:
-        """Values have grown until they are beyond all bounds."""
-        reached = done * self.grid.step
-        message = (
-            f"{where} {how} at {reached:g} s; the coupling or the model is unstable: "
-            f"use a step below {self._step(done):g} s or an algorithm with a higher limit"
-        )
-        return Outcome(OutcomeKind.DIVERGED, reached, where, message)
-
-    def _ended(self, status: int, culprit: int) -> Outcome | None:
-        """The end that a part asked for; None if none did."""
-        every = self.network.parts
-        asked = {PART_FAILED: every[culprit : culprit + 1], COUPLING_FAILED: every}
-        for part in asked.get(status, ()):
-            if (end := part.ended()) is not None:
-                message = f"{part.name} ended the simulation at {end:g} s"
-                return Outcome(OutcomeKind.ENDED, end, part.name, message)
-        return None
-
-    def _outcome_at_end(self, reached: float) -> Outcome:
-        """Completed, unless the coupling was seen to add energy without end."""
-        energy = self.watch.report()
-        if energy is None or energy.verdict is not Verdict.UNSTABLE:
-            return self._outcome_of_rows(reached)
-        bond = energy.bond or ""
-        message = (
-            f"ran to the end, but the coupling is unstable from {energy.time:.4g} s, most of all "
-            f"at {bond}: use a step below {self._step(self.grid.count):g} s or an algorithm with a "
-            "higher limit"
-        )
-        return Outcome(OutcomeKind.UNSTABLE, reached, bond, message)
-
-    def _outcome_of_rows(self, reached: float) -> Outcome:
-        """Completed, with or without outputs that are no numbers."""
-        if (found := self.rows.first_nan(self.grid.count)) is None:
-            return Outcome(OutcomeKind.COMPLETED, reached)
-        where, since = found
-        message = f"{where} is NaN from {since:g} s on; no part takes it, and all else is complete"
-        return Outcome(OutcomeKind.WITH_NAN, reached, where, message)
-
     def _recording(self, done: int, outcome: Outcome, wall: float, cpu: float) -> Recording:
         kept, record_step = self.rows.finish(done, outcome)
         rows = self.rows
@@ -266,7 +165,7 @@ class Run:
             names=rows.names,
             units=rows.units,
             outcome=outcome,
-            step=self._step(done),
+            step=self.mean_step(done),
             record_step=record_step,
             macro_steps=self.prepared.macro_steps(done),
             passes=dict(passes),
@@ -284,6 +183,6 @@ class Run:
             estimate=self.prepared.estimate,
         )  # fmt: skip
 
-    def _step(self, done: int) -> float:
+    def mean_step(self, done: int) -> float:
         """Macro step, or its mean [s]."""
         return self.grid.step * (done / max(self.prepared.macro_steps(done), 1) if done else 1)

@@ -13,7 +13,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.result.result import Result
-from herringbone.running.coupled import Asked
+from herringbone.running.coupling_choice import Asked
 from herringbone.running.fused.fused import (
     FusedAsked,
     check_coupling,

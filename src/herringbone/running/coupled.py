@@ -1,23 +1,14 @@
-"""One co-simulation of a prepared system: parts understood, algorithm chosen, stepped."""
+"""One co-simulation of a prepared system: parts opened, stepped, and what comes of it."""
 
 import logging
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from herringbone.analysis.stability.instability import warn_if_unstable
-from herringbone.analysis.stability.steps.step_limits import clocks_of
-from herringbone.core import HerringboneError
-from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
 from herringbone.core.places.files import same_folder
 from herringbone.cosim.algorithms import (
-    LI,
     Algorithm,
-    Jacobi,
-    choose_algorithm,
-    start_step,
 )
 from herringbone.cosim.cell.policy import remarks_of_cells
 from herringbone.cosim.exit_guard import exit_guard
@@ -26,11 +17,9 @@ from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import System
-from herringbone.result.budget import BudgetRow
 from herringbone.result.result import Result
-from herringbone.running.foreign.foreign_parts import understood
-from herringbone.running.foreign.interfaces import exchanged_outputs, unfed
-from herringbone.running.foreign.surrogates import surrogates_of, turned_back, under_load
+from herringbone.running.coupling_choice import Asked, way_of
+from herringbone.running.foreign.interfaces import exchanged_outputs
 from herringbone.running.fused.beside import (
     KIND,
     fused_beside,
@@ -39,10 +28,9 @@ from herringbone.running.fused.beside import (
     with_core_steps,
     with_recorded_channels,
 )
-from herringbone.running.loading import in_one_run, instances, open_parts
+from herringbone.running.loading import in_one_run, open_parts
 from herringbone.running.operating.lean import with_row
 from herringbone.running.output.run_output import RunOutput
-from herringbone.running.remembered_answers import bond_of, stability_warning
 from herringbone.running.reporting.progress import Progress, told
 from herringbone.running.reporting.run_result import (
     decimated,
@@ -51,57 +39,10 @@ from herringbone.running.reporting.run_result import (
     start_of,
     with_remarks,
 )
-from herringbone.running.steps.suited_step import suited_step
 from herringbone.scenes import Scene
 
 _log = logging.getLogger(__name__)
 _SAME = 1.0 - 1e-6
-
-
-@dataclass(frozen=True)
-class Asked:
-    """What is asked of the coupling; None: chosen by what the parts are.
-
-    Attributes:
-        algorithm: of the coupling.
-        step: macro step [s].
-        tolerance: relative error of the run.
-        slow: bodies that step once in several macro steps.
-        fmu: kind of the parts' FMUs.
-        probe: find out what foreign FMUs are.
-        record_step: that the caller gave [s].
-        all_points: keep all communication points beside the result.
-        warn: say whether the step is stable.
-        notes: lines that are known already.
-        inner_step: longest of the own parts [s], of which an adaptive step takes account.
-        part_tolerance: that parts are told; None: none.
-        fuse: condense all parts of this package into one, which is coupled with the others.
-        record: of a fused run, patterns of outputs, or groups of channels, that are recorded.
-        core_step: longest base step of the condensed parts [s].
-        judge: make the error budget, and lines on what does not fit together; False for runs that
-            only tell the error of another.
-        left_out: row of the error budget, of what the model leaves out.
-        by_default: the tolerance is the default one, as nothing was said.
-    """
-
-    fmu: str
-    algorithm: Algorithm | None = None
-    step: float | None = None
-    tolerance: float | None = None
-    slow: Mapping[str, int] | None = None
-    probe: bool = True
-    record_step: float | None = None
-    all_points: bool = False
-    warn: bool = True
-    notes: Sequence[str] = field(default=())
-    inner_step: float = 0.0
-    part_tolerance: float | None = None
-    fuse: bool = False
-    record: tuple[str, ...] = ()
-    core_step: float | None = None
-    judge: bool = True
-    left_out: BudgetRow | None = None
-    by_default: bool = False
 
 
 class Coupled(NamedTuple):
@@ -159,32 +100,11 @@ def _coupled(
     output: RunOutput | None,
 ) -> Coupled:
     """See `coupled`; without what is found out when the parts are closed."""
-    lines, algorithm = list(asked.notes), asked.algorithm
     with same_folder(), exit_guard(), _opened(system, asked) as (exchanging, opened, said):
-        parts: Sequence[Part] = opened
-        lines += said
         if asked.record:
             system = with_recorded_channels(system, opened)
-        if not system.connections and algorithm is None:
-            asked = replace(asked, step=asked.step or min(scene.record_step, scene.t_end))
-            algorithm = Jacobi(order=0)
-            lines.append(f"auto: {algorithm}, once per record, because nothing is connected")
-        elif asked.probe and system.connections:
-            trial = asked.step or (algorithm or LI()).start_step
-            parts, found = understood(exchanging, opened, instances, trial)
-            lines += [*found, *unfed(exchanging, parts)]
-        if algorithm is None:
-            algorithm, why = choose_algorithm(parts, asked.step)
-            lines.append(why)
-        bond = bond_of(system)
-        own = start_step(algorithm, parts)
-        step = asked.step or suited_step(system, scene, algorithm, own, bond, asked.record_step)
-        if asked.step is None and step > own:
-            lines.append(
-                f"auto: steps of {step:.3g} s, because no bond is faster than {bond:.3g} rad/s"
-            )
-        if asked.warn:
-            lines += _stability_notes(system, parts, algorithm, step, scene.t_end, asked)
+        way = way_of(system, scene, asked, exchanging, opened)
+        algorithm, step, lines = way.algorithm, way.step, [*asked.notes, *said, *way.lines]
         suit(opened, step)
         points = asked.all_points and not algorithm.adaptive
         grid = make_grid(scene.t_end, step, step if points else scene.record_step)
@@ -198,16 +118,24 @@ def _coupled(
             streaming = _streaming(output, start, scene, grid, asked)
         with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
             recording = simulate(
-                exchanging, parts, algorithm, grid, tell, bond_frequency=bond, slow=asked.slow,
-                inner_step=asked.inner_step, tolerance=asked.part_tolerance, streaming=streaming,
-            )  # fmt: skip
+                exchanging,
+                way.parts,
+                algorithm,
+                grid,
+                tell,
+                bond_frequency=way.bond,
+                slow=asked.slow,
+                inner_step=asked.inner_step,
+                tolerance=asked.part_tolerance,
+                streaming=streaming,
+            )
         recording = with_core_steps(recording, opened)
-        lines += _step_notes(asked.step, algorithm, recording)
+        lines += _step_notes(way.wanted, algorithm, recording)
         every = make_result(
             system, scene, algorithm, kind, recording, lines, by_default=asked.by_default
         )
         if asked.judge:
-            every = with_row(judged(every, system, bond), asked.left_out)
+            every = with_row(judged(every, system, way.bond), asked.left_out)
         _log_end(recording)
         if asked.all_points:
             result = decimated(every, scene.record_step)
@@ -216,7 +144,7 @@ def _coupled(
         if recorded:
             recorded(result)
         once = bool(in_one_run(system))
-        exchanged = exchanged_outputs(exchanging, parts)
+        exchanged = exchanged_outputs(exchanging, way.parts)
     return Coupled(result, every, recording, algorithm, once, exchanged)
 
 
@@ -237,41 +165,6 @@ def _streaming(
     """Where rows go: those that the scene asks for."""
     every = make_grid(scene.t_end, grid.step, scene.record_step).every // grid.every
     return output.stream(start, every, keeps_all=asked.all_points)
-
-
-def _stability_notes(
-    system: System,
-    parts: Sequence[Part],
-    algorithm: Algorithm,
-    step: float,
-    t_end: float,
-    asked: Asked,
-) -> list[str]:
-    """A line if the step is unstable; nothing is predicted with slow bodies, or without trials.
-
-    An adaptive step needs none: it finds the limit, and goes below.
-    """
-    known = not system.foreign_parts or (asked.probe and system.connections)
-    if algorithm.adaptive or asked.slow or not known:
-        return []
-    if asked.fuse:
-        return ["whether the step is stable is not known: that of fused parts is not predicted"]
-    what = f"predicting whether {system.name} is stable"
-    if not system.foreign_parts:
-        with activity(what):
-            warning = stability_warning(system, algorithm, step, t_end, under_load)
-        return [warning] if warning else []
-    with activity(what), surrogates_of(system, parts, step) as found:
-        if found.missing:
-            return [f"whether the step is stable is not known: {found.why}"]
-        for clock in clocks_of(found.strangers):
-            try:
-                clock.parts_of_period(step)
-            except HerringboneError as error:
-                return [f"whether the step is stable is not known: {error}"]
-        loaded = turned_back(under_load(system))
-        warning = warn_if_unstable(loaded, algorithm, step, t_end, strangers=found.strangers)
-    return [warning] if warning else []
 
 
 def _record_notes(record_step: float | None, algorithm: Algorithm, grid: Grid) -> list[str]:

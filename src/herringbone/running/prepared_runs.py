@@ -12,7 +12,8 @@ from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
-from herringbone.running.coupled import Asked, Coupled, coupled
+from herringbone.running.coupled import Coupled, coupled
+from herringbone.running.coupling_choice import Asked
 from herringbone.running.fused.fused import FusedAsked, fused, verified_by_half
 from herringbone.running.operating.lean import refuse_lean
 from herringbone.running.output.run_output import RunOutput

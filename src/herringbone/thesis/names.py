@@ -1,13 +1,19 @@
-"""Names in the shipped systems that entries use, as a user's script would."""
+"""Names in the shipped systems that entries use, as a user's script would.
+
+The shipped systems call a part by the name of its component.
+"""
+
+from herringbone.components.registry import component_for
+from herringbone.core.declaring.roles import Role
 
 RIG = "test_rig"
 GEARBOX = "gearbox"
 ON_GROUND = "on_ground"
 GRADUAL = "gradual"
 """Its scene with the thesis' start."""
-GEAR = "gear_mesh"
-BEARINGS = "bearing_supports"
-HOUSING = "modal_housing"
-CONTROLLER = "bench_controller"
-SEAT_MOTION = "bearing_supports.seat_motion"
-SYMMETRY_DEVIATION = "gear_mesh.symmetry_deviation"
+GEAR = component_for(Role.GEAR_PAIR).name
+BEARINGS = component_for(Role.BEARING).name
+HOUSING = component_for(Role.HOUSING).name
+CONTROLLER = component_for(Role.CONTROLLER).name
+SEAT_MOTION = f"{BEARINGS}.seat_motion"
+SYMMETRY_DEVIATION = f"{GEAR}.symmetry_deviation"

@@ -10,6 +10,7 @@ from herringbone.core.places.part_path import (
     endings,
     find_part,
     flat_name,
+    in_groups,
     split_variable,
 )
 
@@ -71,6 +72,16 @@ def test_names_of_a_column():
     assert endings(PARTS, "motor.flange.w") == ("motor.flange.w",)
     assert endings(PARTS, "a.b.gear.x.y") == ("a.b.gear.x.y", "b.gear.x.y", "gear.x.y")
     assert endings(PARTS, "stranger.y") == ("stranger.y",)
+
+
+def test_groups_of_columns():
+    """By any ending of the part; a group of which no column is there is none."""
+    columns = ["motor.w", "first.gear.w", "second.gear.w", "second.gear.f"]
+    groups = {"speeds": ["gear.w", "motor.*"], "forces": ["second.*.f"], "other": ["ear.w", "w"]}
+    assert in_groups(PARTS, columns, groups) == {
+        "speeds": ["motor.w", "first.gear.w", "second.gear.w"],
+        "forces": ["second.gear.f"],
+    }
 
 
 def test_a_flat_name_has_no_dots():

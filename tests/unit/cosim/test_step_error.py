@@ -190,7 +190,7 @@ def test_a_channel_errs_by_its_own_derivative():
 def test_an_unknown_may_be_a_channel_and_is_measured_once():
     """The force alone, of two of one unit, is a channel: its size is its own."""
     nodes = two_signals()._replace(group=np.zeros(2, np.int64))
-    measured = measured_signals(nodes, np.zeros(2, np.int64), [np.array([1]), np.array([], int)])
+    measured = measured_signals(nodes, np.zeros(2, np.int64), [np.array([1])])
     assert measured.output.tolist() == [0, 1]
     assert (measured.member.tolist(), measured.group.tolist()) == ([0, 1, 1], [0, 0, 1])
     moments, covered = np.zeros((SIZE + 1, 2)), np.zeros(4)

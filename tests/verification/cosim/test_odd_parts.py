@@ -10,7 +10,7 @@ from support.parts.fakes import OK, CallbackPart
 
 from herringbone.cosim.signature import Kind
 from herringbone.cosim.signature.rotation import InputRule
-from herringbone.running.foreign.foreign_parts import signature_of
+from herringbone.running.foreign.trials import signature_of
 
 
 class Odd(CallbackPart):

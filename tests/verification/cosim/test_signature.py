@@ -13,7 +13,7 @@ from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Answer, Kind
 from herringbone.cosim.signature.rotation import InputRule
-from herringbone.running.foreign.foreign_parts import signature_of
+from herringbone.running.foreign.trials import signature_of
 
 ANSWERS = tomllib.loads((KINDS / "answers.toml").read_text(encoding="utf-8"))
 NAMES = {

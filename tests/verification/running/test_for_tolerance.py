@@ -12,7 +12,7 @@ from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.analysis.stability.recommendation import separation_step
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.cosim.algorithms import LI, Jacobi
-from herringbone.running.coupled import Asked
+from herringbone.running.coupling_choice import Asked
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.steps.for_tolerance import by_default, for_tolerance
 from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps

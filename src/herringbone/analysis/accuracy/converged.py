@@ -6,9 +6,7 @@ What the parts themselves err is in both, and does not show.
 import math
 from collections.abc import Callable, Sequence
 
-import numpy as np
-
-from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.accuracy.error import Rows, errors_by_group
 from herringbone.core import HerringboneError
 from herringbone.core.part import Part, closing_all
 from herringbone.core.places.part_path import in_groups
@@ -53,9 +51,7 @@ class Converged:
                 dict.fromkeys(f"{parts[c.source].name}.{c.output}" for c in network.connections)
             )
         self._algorithm: Algorithm = LI(degree=4) if repeats else Jacobi(order=2)
-        found = in_groups(system.paths, names, system.channels)
-        self.groups = {group: columns for group, columns in found.items() if columns}
-        self.groups = self.groups or {_ALL: names}
+        self.groups = in_groups(system.paths, names, system.channels) or {_ALL: names}
         most = max(grid.count for grid in grids)
         common = math.lcm(*(grid.count for grid in grids))
         self._fewest = _FINER * most
@@ -74,16 +70,8 @@ class Converged:
             return dict.fromkeys(self.groups, math.inf)
         count = len(recording.time) - 1
         finer, every = self._at(count, float(recording.time[-1]))
-        found = {}
-        for group, columns in self.groups.items():
-            ours, theirs = (
-                run.values[::rows, [run.names.index(c) for c in columns]]
-                for run, rows in ((recording, 1), (finer, every))
-            )
-            with np.errstate(over="ignore", invalid="ignore"):
-                error = relative_error(ours, theirs)
-            found[group] = error if math.isfinite(error) else math.inf
-        return found
+        run, exact = (Rows(r.values[::k], r.names) for r, k in ((recording, 1), (finer, every)))
+        return errors_by_group(self.groups, run, exact)
 
     def _at(self, count: int, t_end: float) -> tuple[Recording, int]:
         """A finer run, and every how many of its rows are the points of a run of so many steps."""

@@ -1,6 +1,39 @@
 """The error of a co-simulation against its monolithic twin."""
 
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
 import numpy as np
+
+
+class Rows(NamedTuple):
+    """Values (times, columns) at communication points, and the names of the columns."""
+
+    values: np.ndarray
+    names: Sequence[str]
+
+    def of(self, columns: Sequence[str]) -> np.ndarray:
+        """Values (times, columns) of some columns."""
+        return self.values[:, [self.names.index(column) for column in columns]]
+
+
+def errors_by_group(
+    groups: Mapping[str, Sequence[str]], run: Rows, exact: Rows, time: np.ndarray | None = None
+) -> dict[str, float]:
+    """Relative error of each group of columns; infinite where a run has grown beyond numbers.
+
+    Args:
+        groups: columns by group.
+        run, exact: at the same times.
+        time: see `relative_error`.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        errors = {
+            group: relative_error(run.of(columns), exact.of(columns), time)
+            for group, columns in groups.items()
+        }
+    return {group: e if math.isfinite(e) else math.inf for group, e in errors.items()}
 
 
 def relative_error(values: np.ndarray, twin: np.ndarray, time: np.ndarray | None = None) -> float:

@@ -10,7 +10,7 @@ from contextlib import suppress
 import numpy as np
 
 from herringbone.analysis.accuracy.converged import Converged
-from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.accuracy.error import Rows, errors_by_group
 from herringbone.analysis.accuracy.work_precision import REFUSED, Point
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
@@ -80,8 +80,7 @@ class Reference:
             for part, own in zip(twin.network.parts, record_names(twin.network), strict=True)
             for name in own
         ]
-        found = in_groups(system.paths, names, system.channels)
-        self.groups = {group: columns for group, columns in found.items() if columns}
+        self.groups = in_groups(system.paths, names, system.channels)
         if not self.groups:
             raise ParameterError(
                 f"system '{system.name}' has no channels to measure errors on; "
@@ -97,14 +96,8 @@ class Reference:
         if not recording.outcome.reached_end:
             return dict.fromkeys(self.groups, math.inf)
         twin, time = self._at(recording.time)
-        found = {}
-        for group, columns in self.groups.items():
-            values = recording.values[:, [recording.names.index(c) for c in columns]]
-            own = twin[:, [self._columns.index(c) for c in columns]]
-            with np.errstate(over="ignore", invalid="ignore"):
-                error = relative_error(values, own, time)
-            found[group] = error if math.isfinite(error) else math.inf
-        return found
+        run, exact = Rows(recording.values, recording.names), Rows(twin, self._columns)
+        return errors_by_group(self.groups, run, exact, time)
 
     def _at(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
         """The twin (n, columns) at times; these too, if they are no grid of the reference."""

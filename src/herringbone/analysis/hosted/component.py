@@ -23,7 +23,7 @@ from herringbone.analysis.hosted.misfits import misfits
 from herringbone.analysis.hosted.places import Places, coordinates
 from herringbone.analysis.hosted.remarks import remark_source, remarks_of
 from herringbone.analysis.hosted.source import own_lines
-from herringbone.analysis.hosted.step_limits import advice, models_of
+from herringbone.analysis.hosted.step_limits import Models, advice, models_of
 from herringbone.analysis.twin.block_core.form import core_form, equations_of, why_not
 from herringbone.analysis.twin.block_core.source import core_source
 from herringbone.analysis.twin.composite import Composite, dear
@@ -54,7 +54,7 @@ from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.condensed.in_block.leaps import leaper, readier
-from herringbone.kernels.condensed.in_block.places import work_places
+from herringbone.kernels.condensed.in_block.places import WorkPlaces, work_places
 from herringbone.kernels.periodic.places import periodic_scratch
 from herringbone.kernels.spectral_radius import radius_scratch
 from herringbone.kernels.stepping.adaptive import LONGEST_STEP, adaptive_stepper, adaptive_work
@@ -89,39 +89,22 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
     boundary = make_boundary(system, wanted)
     parts = make_parts(boundary.system)
     guesses = _guesses(boundary, parts)
-    count = parts.layout.state_first[-1] + sum(len(own_states(f)) for f in boundary.flanges)
-    found = coordinates(boundary, parts)
-    unknowns = sum(not c.turns for c in found) + sum(bool(f.shaft) for f in boundary.flanges)
-    scratch = count + max(
-        newton_scratch(unknowns), radius_scratch(count), periodic_scratch(count, len(found))
-    )
+    count, scratch = _room(boundary, parts)
     inputs = _inputs(boundary)
     first = adaptive_work(count, inputs)
     without_core = _without_core(boundary, parts)
     form = None if without_core else core_form(parts, inputs, LENGTHS, _ROUGH)
-    work = work_places(form, first).end if form else first
+    at = work_places(form, first) if form else None
+    work = at.end if at else first
     declaration = host_declaration(boundary, parts, _TOLERANCE, scratch, guesses, work)
     places = Places(boundary, parts, declaration)
-    source = composite_source(
-        twin_source(parts.network, parts.instances, parts.layout),
-        parts.instances,
-        parts.layout.block_first,
-        parts.layout.state_first,
-        places.block_map(),
-        own_lines(places.flanges(), places.start(guesses), places.starts()),
-    )
-    status = work_places(form, first).status if form else None
-    source += remark_source(parts, declaration.first_table, status)
+    module = load_generated("composite", _source(places, guesses, at))
     core = None
-    if form:
-        fed = tuple(inside for _, inside in places.block_map().inputs)
-        source += core_source(parts, declaration.first_table, fed)
-    module = load_generated("composite", source)
-    if form:
+    if form and at:
         equations = equations_of(declaration, module, places.state_sizes, -1)
-        at = work_places(form, first)
         core = partial(leaper, form, at, equations, readier(form, at, equations))
     loader = loader_of(declaration, parts.instances, module)
+    models = cache(lambda: models_of(composite, boundary.flanges))
     component = Component(
         declaration,
         Kernels(
@@ -134,30 +117,65 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
         indicator_count=sum(i.component.indicator_count for i in parts.instances),
         nominals=nominals_of(declaration, parts),
         longest_step=_longest_step(declaration),
-        hosting=Hosting(
-            module.settle,
-            _NOT_SETTLED,
-            tuple(
-                RunsOn(f"{f.name}.phi", f"{f.name}.w", since(f))
-                for f in boundary.flanges
-                if f.given is Given.MOTION
-            ),
-            wanted.exchange,
-            tuple(misfits(boundary, parts)),
-            lambda: {flange: model.as_lists() for flange, (_, model) in models().items()},
-            cache(lambda: advice(models())),
-        ),
+        hosting=_hosting(boundary, parts, module, wanted, models),
         by_tolerance=ByTolerance(
-            TOLERANCE,
-            EXPERIMENT,
-            remarks_of(parts, condensed=form is not None),
-            module.remark,
+            TOLERANCE, EXPERIMENT, remarks_of(parts, condensed=form is not None), module.remark
         ),
     )
-    models = cache(lambda: models_of(composite, boundary.flanges))
     resources = resources_with_gear_data(parts.instances, boundary.pair)
     composite = Composite(component, resources, dear(without_core))
     return composite
+
+
+def _room(boundary: Boundary, parts: Parts) -> tuple[int, int]:
+    """Number of states, and of numbers that its searches and steps work on."""
+    count = parts.layout.state_first[-1] + sum(len(own_states(f)) for f in boundary.flanges)
+    found = coordinates(boundary, parts)
+    unknowns = sum(not c.turns for c in found) + sum(bool(f.shaft) for f in boundary.flanges)
+    return count, count + max(
+        newton_scratch(unknowns), radius_scratch(count), periodic_scratch(count, len(found))
+    )
+
+
+def _source(places: Places, guesses: list[Variable], at: WorkPlaces | None) -> str:
+    """Source of its kernels; with those of the condensed form where that has a place."""
+    parts, first_table = places.parts, places.declaration.first_table
+    source = composite_source(
+        twin_source(parts.network, parts.instances, parts.layout),
+        parts.instances,
+        parts.layout.block_first,
+        parts.layout.state_first,
+        places.block_map(),
+        own_lines(places.flanges(), places.start(guesses), places.starts()),
+    )
+    source += remark_source(parts, first_table, at.status if at else None)
+    if at:
+        fed = tuple(inside for _, inside in places.block_map().inputs)
+        source += core_source(parts, first_table, fed)
+    return source
+
+
+def _hosting(
+    boundary: Boundary,
+    parts: Parts,
+    module: ModuleType,
+    wanted: Wanted,
+    models: Callable[[], Models],
+) -> Hosting:
+    """What a host is told, and can ask for."""
+    return Hosting(
+        module.settle,
+        _NOT_SETTLED,
+        tuple(
+            RunsOn(f"{f.name}.phi", f"{f.name}.w", since(f))
+            for f in boundary.flanges
+            if f.given is Given.MOTION
+        ),
+        wanted.exchange,
+        tuple(misfits(boundary, parts)),
+        lambda: {flange: model.as_lists() for flange, (_, model) in models().items()},
+        cache(lambda: advice(models())),
+    )
 
 
 def _equations(boundary: Boundary, parts: Parts) -> str:

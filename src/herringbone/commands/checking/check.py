@@ -121,8 +121,8 @@ def _signature(fmu: Path, step: float | None) -> list[str]:
     """What the FMU is in a coupling; nothing if it cannot be used at all, which is said already."""
     from herringbone.cosim.fmu.opening import many_of  # noqa: PLC0415
     from herringbone.cosim.signature.text import described  # noqa: PLC0415
-    from herringbone.running.foreign.foreign_parts import clearest_signature  # noqa: PLC0415 (numba)
     from herringbone.running.foreign.started import own_step  # noqa: PLC0415
+    from herringbone.running.foreign.trials import clearest_signature  # noqa: PLC0415 (numba)
 
     try:
         steps = (step,) if step else (own_step(fmu), *_SHORTER)

@@ -1,7 +1,7 @@
 """Canonical names of parts: the path through the systems that contain them.
 
-A part of the system itself is `gear_mesh`; one of the nested system `gearbox` is
-`gearbox.gear_mesh`, to any depth. Files and results have the whole path; what people write may be
+A part of the system itself is `gears`; one of the nested system `gearbox` is `gearbox.gears`, to
+any depth. Files and results have the whole path; what people write may be
 any ending of it that is not ambiguous.
 """
 
@@ -116,7 +116,7 @@ def endings(parts: Iterable[PartPath], column: str) -> tuple[str, ...]:
 def in_groups(
     parts: Sequence[PartPath], columns: Sequence[str], groups: Mapping[str, Sequence[str]]
 ) -> dict[str, list[str]]:
-    """Columns of each group, in their order; empty where none matches.
+    """Columns of each group, in their order; without the groups of which no column is there.
 
     Args:
         parts: whose variables they are.
@@ -124,7 +124,8 @@ def in_groups(
         groups: patterns by group.
     """
     called = {name: endings(parts, name) for name in columns}
-    return {
+    found = {
         group: [name for name, own in called.items() if matches_any(own, patterns)]
         for group, patterns in groups.items()
     }
+    return {group: names for group, names in found.items() if names}

@@ -4,14 +4,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from herringbone.cosim.algorithms.adaptive_figures import error_estimate, step_statistics
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.algorithms.iterated import SMALLEST, PreparedNodes
-from herringbone.cosim.algorithms.jacobian import (
-    PREDICTION,
-    CouplingError,
-    StepRefusedError,
-    correction_matrix,
-)
+from herringbone.cosim.algorithms.jacobian import PREDICTION, CouplingError, StepRefusedError
+from herringbone.cosim.algorithms.rung_jacobians import RungJacobians
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.adaptive import (
     ACCEPTED,
@@ -36,11 +33,8 @@ from herringbone.cosim.layouts.starts import Starts
 from herringbone.cosim.loops.adaptive_step.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
 from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT, run_adaptive
 from herringbone.cosim.loops.adaptive_step.step_error import (
-    COUPLING,
-    INNER_STEPS,
     LARGEST,
     ORDER,
-    SIZE,
     room_for,
     update_sizes,
 )
@@ -56,22 +50,6 @@ MEMORY = 100.0
 """Time over which forces are taken about a straight line, in largest steps."""
 LARGEST_STEP = 2e-4
 """The largest step [s] where nothing is told; shorter ones, for rows between, leave the memory."""
-
-
-def fitted(known: Mapping[int, np.ndarray], rung: int) -> np.ndarray:
-    """S(h) = a h + b h^2 through the nearest rungs with a Jacobian; b h^2 through one.
-
-    Args:
-        known: Jacobians (unknowns p, unknowns p) by rung; at least one.
-        rung: that has none.
-    """
-    near = sorted(known, key=lambda k: abs(k - rung))[:2]
-    h = RUNGS[rung]
-    if len(near) == 1:
-        return (h / RUNGS[near[0]]) ** 2 * known[near[0]]
-    one, two = (RUNGS[k] for k in near)
-    first, second = (known[k] / RUNGS[k] for k in near)
-    return h * (first + (h - one) / (two - one) * (second - first))
 
 
 class PreparedAdaptive(PreparedNodes):
@@ -109,7 +87,7 @@ class PreparedAdaptive(PreparedNodes):
             network, degree, full_order, newton=True, corrections=corrections, most=most
         )
         self.tolerance = tolerance
-        self._sensitivities: dict[int, np.ndarray] = {}
+        self._by_rung = RungJacobians()
         self._adaptive: Adaptive | None = None
         self._record = GrowingRecord(0)
         self._tick = 0.0
@@ -143,17 +121,7 @@ class PreparedAdaptive(PreparedNodes):
     @property
     def steps(self) -> StepStatistics | None:
         """Macro steps by their length."""
-        if self._adaptive is None:
-            return None
-        taken = np.repeat(self._adaptive.rungs, self._adaptive.taken) * self._tick
-        lengths = np.sort(taken) if taken.size else np.zeros(1)
-        return StepStatistics(
-            int(taken.size),
-            int(self._adaptive.rejected.sum()),
-            float(lengths[0]),
-            float(np.median(lengths)),
-            float(lengths[-1]),
-        )
+        return step_statistics(self._adaptive, self._tick) if self._adaptive else None
 
     @property
     def adaptive(self) -> Adaptive | None:
@@ -162,20 +130,8 @@ class PreparedAdaptive(PreparedNodes):
 
     @property
     def estimate(self) -> ErrorEstimate | None:
-        """Error of the run so far: of the group of forces that errs most, over their alternation.
-
-        That of the run, if it goes on as it began, see `step_error`.
-        """
-        if self._adaptive is None or self._buffers is None:
-            return None
-        covered, errors = self._adaptive.covered[0], self._adaptive.errors
-        count = self._adaptive.measured.members
-        if not covered > 0.0 or not count.size:
-            return None
-        sizes = self._adaptive.moments[SIZE, : count.size]
-        parts = np.sqrt(errors / (covered * count)) / sizes
-        worst = parts[:, np.hypot(*parts).argmax()]
-        return ErrorEstimate(self.tolerance, float(worst[COUPLING]), float(worst[INNER_STEPS]))
+        """Error of the run so far, see `error_estimate`."""
+        return error_estimate(self._adaptive, self.tolerance) if self._adaptive else None
 
     @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
@@ -194,22 +150,13 @@ class PreparedAdaptive(PreparedNodes):
 
     def _make_adaptive(self, buffers: Buffers) -> Adaptive:
         nodes = self.nodes
-        sources = [self.jacobian.owners[i] for i in nodes.unknown]
-        held_by = {
-            (c.source, c.output)
-            for c in self.network.connections
-            if self.degree[c.target] == 0
-            and self.input_degree(c.target) < nodes.degree
-            and not self.layout.at_end[c.target]
-        }
-        held = np.array([source in held_by for source in sources], dtype=np.int64)
         found = channel_outputs(self.network, self.channels)
         self._downgrades += tuple(
             f"no part takes anything of '{group}': the step is not measured by these channels"
-            for group, outputs in found.items()
-            if not outputs.size
+            for group in self.channels
+            if group not in found
         )
-        measured = measured_signals(nodes, held, list(found.values()))
+        measured = measured_signals(nodes, self._held(), list(found.values()))
         adaptive = new_adaptive(
             nodes,
             np.array(RUNGS, dtype=np.int64),
@@ -230,6 +177,18 @@ class PreparedAdaptive(PreparedNodes):
         )
         return adaptive
 
+    def _held(self) -> np.ndarray:
+        """1 for unknowns that a body holds over the step."""
+        held_by = {
+            (c.source, c.output)
+            for c in self.network.connections
+            if self.degree[c.target] == 0
+            and self.input_degree(c.target) < self.nodes.degree
+            and not self.layout.at_end[c.target]
+        }
+        sources = (self.jacobian.owners[i] for i in self.nodes.unknown)
+        return np.array([source in held_by for source in sources], dtype=np.int64)
+
     def saved(self) -> Arrays:
         """See `PreparedRun`; rows and their times are the record's."""
         found = super().saved() | arrays_of("adaptive", self._adaptive)
@@ -237,7 +196,7 @@ class PreparedAdaptive(PreparedNodes):
         texts = {"missing": self._missing, "culprit": self.culprit}
         return (
             found
-            | {f"sensitivity.{rung}": s for rung, s in self._sensitivities.items()}
+            | self._by_rung.saved()
             | {name: np.frombuffer(text.encode(), np.uint8) for name, text in texts.items()}
             | {"kept": np.array(self._kept)}
         )
@@ -246,8 +205,7 @@ class PreparedAdaptive(PreparedNodes):
         """See `PreparedRun`."""
         super().put(saved)
         put_arrays("adaptive", self._adaptive, saved)
-        rungs = (name for name in saved if name.startswith("sensitivity."))
-        self._sensitivities = {int(n.partition(".")[2]): saved[n].copy() for n in rungs}
+        self._by_rung.put(saved)
         self._missing, self.culprit = (saved[n].tobytes().decode() for n in ("missing", "culprit"))
         self._kept = float(saved["kept"])
         if self._adaptive is not None:
@@ -299,13 +257,12 @@ class PreparedAdaptive(PreparedNodes):
         """Correction of the rung in use; a status of the loop."""
         rung = int(adaptive.state[USED])
         t, h = done * tick, RUNGS[rung] * tick
-        own = not self._sensitivities or adaptive.ready[rung] == NEEDED
+        own = self._by_rung.none or adaptive.ready[rung] == NEEDED
         try:
             if own:
-                self._sensitivities[rung] = self._measured(buffers, adaptive, rung, t, h)
+                self._by_rung.keep(rung, self._measured(buffers, adaptive, rung, t, h))
                 adaptive.owed[rung] = 0
-            found = self._sensitivities[rung] if own else fitted(self._sensitivities, rung)
-            adaptive.corrections[rung] = correction_matrix(found, t, h)
+            adaptive.corrections[rung] = self._by_rung.correction(rung, t, h)
         except StepRefusedError as error:
             if rung == 0:
                 self.problem = str(error)

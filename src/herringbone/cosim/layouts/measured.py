@@ -39,9 +39,8 @@ def measured_signals(
     Args:
         nodes: the layout of passes.
         held: see `Measured`; of the unknowns.
-        channels: outputs of each group; one without any is left out.
+        channels: outputs of each group, at least one.
     """
-    channels = [outputs for outputs in channels if outputs.size]
     more = np.setdiff1d(np.concatenate([nodes.unknown[:0], *channels]), nodes.unknown)
     output = np.concatenate([nodes.unknown, more])
     place = {int(i): k for k, i in enumerate(output)}
@@ -63,7 +62,7 @@ def measured_signals(
 def channel_outputs(
     network: Network, channels: Mapping[str, Sequence[str]]
 ) -> dict[str, np.ndarray]:
-    """Outputs that the loop reads of each group of channels; empty where no part takes any.
+    """Outputs that the loop reads, of each group of channels of which a part takes any.
 
     Args:
         network: parts and connections.

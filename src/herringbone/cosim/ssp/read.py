@@ -5,49 +5,33 @@ annotations of other tools. SSP allows any names; what is no identifier is mappe
 `core.names.identifier_for`), and a note says so.
 """
 
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from urllib.parse import unquote, urlparse
 from xml.etree.ElementTree import Element
 
 from herringbone.core import FmuError, StructureError
 from herringbone.core.names import check_name, check_path, identifier_for, is_identifier, shown
 from herringbone.core.part import PartVariable
-from herringbone.core.places.files import is_file
 from herringbone.core.places.part_path import PartPath
-from herringbone.core.reading.numbers import number, whole
-from herringbone.core.reading.texts import read_bytes
-from herringbone.core.reading.xml import LARGEST_XML, parse_xml
+from herringbone.core.reading.numbers import number
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.variables import read_variables
+from herringbone.cosim.ssp.content import Content
 from herringbone.cosim.ssp.flatten import flattened
 from herringbone.cosim.ssp.format import (
     CHANNELS_ANNOTATION,
     FMU_TYPE,
     NAMESPACES,
-    PARAMETER_TYPE,
     PARTS_ANNOTATION,
     local_name,
     qualified,
     read_structure,
     unpack,
 )
+from herringbone.cosim.ssp.parameters import parameters, value_of
 from herringbone.cosim.ssp.ports import Outside, ports_of
 from herringbone.cosim.structure.system import PartSpec, System
-
-_TYPES: Mapping[str, Callable[[str], float | str]] = {
-    "Real": number,
-    "Integer": whole,
-    "Boolean": lambda text: int(text in {"true", "1"}),
-    "String": str,
-    "Enumeration": lambda text: int(text) if text.isdecimal() else text,
-    "Binary": str,
-    "Float64": number,
-    "Float32": number,
-    **{f"{kind}{n}": whole for kind in ("Int", "UInt") for n in (8, 16, 32, 64)},
-}
-"""Values of SSP 1.0, and those that 2.0 has besides."""
 
 
 def read_ssp(file: str | Path) -> System:
@@ -79,18 +63,14 @@ def read_stop_time(file: str | Path) -> float | None:
 
 
 @dataclass(frozen=True)
-class _Reader:
+class _Reader(Content):
     """One file that is being read.
 
     Attributes:
-        file: for messages.
-        folder: where its content lies.
         names: identifiers of the components, by their names in the file.
         notes: lines about names that were changed.
     """
 
-    file: Path
-    folder: Path
     names: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
@@ -155,9 +135,6 @@ class _Reader:
         part, dot, variable = path.partition(".")
         return f"{self.names.get(part, part)}{dot}{variable}"
 
-    def refusal(self, text: str) -> StructureError:
-        return StructureError(f"{self.file}: {text}")
-
     def part(self, element: Element) -> tuple[PartSpec, Mapping[str, PartVariable]]:
         kind, name = local_name(element), element.get("name", "")
         if kind == "SignalDictionaryReference":
@@ -177,19 +154,6 @@ class _Reader:
             raise FmuError(f"{self.file}: component '{name}': {error}") from error
         values = self.values(element, f"component '{name}'", variables)
         return PartSpec(PartPath(self.names[name]), fmu=fmu, values=values), variables
-
-    def path(self, source: str, where: str) -> Path:
-        """File of a source, which must lie in the .ssp."""
-        try:
-            parsed = urlparse(source)
-            path = (self.folder / unquote(parsed.path)).resolve()
-        except (ValueError, OSError):  # no URL, or no path
-            raise self.refusal(f"{where}: source {shown(source)} is no name of a file") from None
-        if parsed.scheme or parsed.netloc or not path.is_relative_to(self.folder.resolve()):
-            raise self.refusal(f"{where}: source '{source}' lies outside the file; pack it")
-        if not is_file(path):
-            raise self.refusal(f"{where}: there is no '{source}' in the file")
-        return path
 
     def connections(self, system: Element) -> Iterator[tuple[str | Outside, str | Outside]]:
         for element in system.iterfind("ssd:Connections/ssd:Connection", NAMESPACES):
@@ -227,52 +191,13 @@ class _Reader:
     ) -> dict[str, float | str]:
         """Values of all parameter bindings of an element; later ones win."""
         found: dict[str, float | str] = {}
-        for binding in element.iterfind("ssd:ParameterBindings/ssd:ParameterBinding", NAMESPACES):
-            for parameter in self.parameter_set(binding, where).iterfind(
-                "ssv:Parameters/ssv:Parameter", NAMESPACES
-            ):
-                name = parameter.get("name", "")
-                where_here = f"{where}, parameter '{name}'"
-                if element.tag == qualified("ssd:System"):
-                    name = self.path_here(name)
-                found[name] = self.value(parameter, variables.get(name), where_here)
+        for parameter in parameters(element, where, self):
+            name = parameter.get("name", "")
+            where_here = f"{where}, parameter '{name}'"
+            if element.tag == qualified("ssd:System"):
+                name = self.path_here(name)
+            found[name] = value_of(parameter, variables.get(name), where_here, self)
         return found
-
-    def parameter_set(self, binding: Element, where: str) -> Element:
-        if binding.find("ssd:ParameterMapping", NAMESPACES) is not None:
-            raise self.refusal(f"{where}: parameter mappings (.ssm) are not supported")
-        if binding.get("prefix"):
-            raise self.refusal(f"{where}: prefixes of parameter bindings are not supported")
-        if (found := binding.get("type", PARAMETER_TYPE)) != PARAMETER_TYPE:
-            raise self.refusal(f"{where}: parameter source of type {found} is not supported")
-        if binding.get("sourceBase", "SSD") != "SSD":
-            raise self.refusal(f"{where}: parameter sources inside an FMU are not supported")
-        source = binding.get("source")
-        inline = binding.find("ssd:ParameterValues/ssv:ParameterSet", NAMESPACES)
-        if source is None and inline is not None:
-            return inline
-        file = self.path(source or "", where)
-        data = read_bytes(file, LARGEST_XML, StructureError)
-        root = parse_xml(data, f"{self.file}: {source}", StructureError)
-        if root.tag != qualified("ssv:ParameterSet"):
-            raise self.refusal(f"{where}: {source} is no SSP 1.0 parameter set")
-        return root
-
-    def value(self, parameter: Element, variable: PartVariable | None, where: str) -> float | str:
-        typed = next((c for c in parameter if local_name(c) != "Annotations"), None)
-        kind = "nothing" if typed is None else local_name(typed)
-        if typed is None or kind not in _TYPES:
-            raise self.refusal(f"{where}: a value of type {kind} is not supported")
-        unit = typed.get("unit")
-        if unit and variable and variable.unit and unit != variable.unit:
-            raise self.refusal(
-                f"{where}: unit '{unit}' is not '{variable.unit}' of the variable; convert it"
-            )
-        text = typed.get("value", "")
-        try:
-            return _TYPES[kind](text)
-        except ValueError:
-            raise self.refusal(f"{where}: '{text}' is no {kind}") from None
 
     def channels(self, system: Element) -> dict[str, tuple[str, ...]]:
         """Groups of result columns, which this package writes as an annotation."""

@@ -1,13 +1,13 @@
 """A system's connections, resolved on its parts' variables and checked."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from herringbone.core import ParameterError, StructureError
-from herringbone.core.names import shown
-from herringbone.core.part import Part, is_signal_node
+from herringbone.core.part import Part
 from herringbone.core.places.part_path import PartPath, find_part
 from herringbone.cosim.structure.connection import Connection
+from herringbone.cosim.structure.joining import Place, joined
 from herringbone.cosim.structure.roles import find_roles
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.structure.types import fits
@@ -112,8 +112,9 @@ def build_network(system: System, parts: Sequence[Part]) -> Network:
     notes: list[str] = []
     connections: list[Connection] = []
     unchecked: dict[tuple[str, ...], list[str]] = {}
-    for first, second in system.connections:
-        for output, input_ in _pairs(first, second, system, parts, index):
+    by_name = {part.name: part for part in parts}
+    for connection in system.connections:
+        for output, input_ in joined(connection, system, by_name):
             connections.append(_connection(output, input_, index, unchecked))
     for wheres in unchecked.values():
         more = f" and {len(wheres) - 1} more between these parts" if len(wheres) > 1 else ""
@@ -142,130 +143,9 @@ def _of_doubles(c: Connection, parts: Sequence[Part]) -> bool:
     return source.is_real and target.is_real
 
 
-def _split(
-    path: str, system: System, parts: Sequence[Part], index: Mapping[str, int]
-) -> tuple[Part, str, list[str]]:
-    """Part, name inside it, and the suffixes of the port's variables ([] for one variable)."""
-    try:
-        name, inner = system.split(path)
-    except ParameterError as error:
-        raise StructureError(
-            f"connection {shown(path)}: it must be PART.PORT or PART.VARIABLE"
-        ) from error
-    part = parts[index[name]]
-    if inner in part.variables or _elements(part, inner):
-        return part, inner, []
-    port = f"{inner}."
-    suffixes = [
-        v[len(port) :]
-        for v, found in part.variables.items()
-        if v.startswith(port)
-        and found.causality in {"input", "output"}
-        and "." not in v[len(port) :]
-    ]
-    if not suffixes:
-        raise StructureError(
-            f"connection '{path}': {name} has no variable or port '{inner}'; it has the ports "
-            + ", ".join(_ports(part))
-        )
-    return part, inner, suffixes
-
-
-def _elements(part: Part, array: str) -> list[str]:
-    """Elements of an array, [] for what is none."""
-    return [name for name, v in part.variables.items() if v.array == array]
-
-
-def _element_pairs(
-    one: tuple[Part, str], two: tuple[Part, str]
-) -> Iterator[tuple[tuple[Part, str], tuple[Part, str]]]:
-    """(output, input) pairs of a connection between two arrays of one shape."""
-    names = [_elements(part, name) for part, name in (one, two)]
-    shapes = [
-        [e.removeprefix(n) for e in found] for found, (_, n) in zip(names, (one, two), strict=True)
-    ]
-    if shapes[0] != shapes[1]:
-        sizes = [f"'{part.name}.{name}' has {len(found) or 'no'} elements"
-                 for found, (part, name) in zip(names, (one, two), strict=True)]  # fmt: skip
-        raise StructureError(
-            f"connection: {' and '.join(sizes)}; arrays of one shape can be connected"
-        )
-    for a, b in zip(*names, strict=True):
-        yield _directed((one[0], a), (two[0], b))
-
-
-def _ports(part: Part) -> list[str]:
-    names = [n for n, v in part.variables.items() if v.causality in {"input", "output"}]
-    return sorted(
-        {n.rpartition(".")[0] for n in names if "." in n and not is_signal_node(part.variables, n)}
-    )
-
-
-def _pairs(
-    first: str, second: str, system: System, parts: Sequence[Part], index: Mapping[str, int]
-) -> Iterator[tuple[tuple[Part, str], tuple[Part, str]]]:
-    """(output, input) pairs of a connection between two variables or two ports."""
-    one, one_name, one_suffixes = _split(first, system, parts, index)
-    two, two_name, two_suffixes = _split(second, system, parts, index)
-    if not one_suffixes and not two_suffixes:
-        if one_name in one.variables and two_name in two.variables:
-            yield _directed((one, one_name), (two, two_name))
-        else:
-            yield from _element_pairs((one, one_name), (two, two_name))
-        return
-    if not one_suffixes or not two_suffixes:
-        raise StructureError(f"connection '{first}' - '{second}': one is a port, the other is not")
-    fed: set[str] = set()
-    for a, b, names in ((one, two, one_suffixes), (two, one, two_suffixes)):
-        a_name, b_name = (one_name, two_name) if a is one else (two_name, one_name)
-        for suffix in names:
-            source, target = f"{a_name}.{suffix}", f"{b_name}.{suffix}"
-            if (
-                a.variables[source].causality == "output"
-                and target in b.variables
-                and b.variables[target].causality == "input"
-            ):
-                fed.add(f"{b.name}.{target}")
-                yield (a, source), (b, target)
-    if not fed:
-        given = [one.variables[f"{one_name}.{suffix}"] for suffix in one_suffixes]
-        outputs = [v for v in given if v.causality == "output"]
-        if outputs and all(v.dependencies for v in outputs):
-            raise StructureError(
-                f"connection '{first}' - '{second}': both give force and want motion (element to "
-                "element); put a body (with inertia) between them"
-            )
-        raise StructureError(
-            f"connection '{first}' - '{second}': both give motion and want force (body to body); "
-            "insert a shaft coupling or another compliant element between them"
-        )
-    for part, name, suffixes in ((one, one_name, one_suffixes), (two, two_name, two_suffixes)):
-        for suffix in suffixes:
-            path = f"{part.name}.{name}.{suffix}"
-            if part.variables[f"{name}.{suffix}"].causality == "input" and path not in fed:
-                raise StructureError(
-                    f"connection '{first}' - '{second}': input '{path}' finds no output "
-                    f"'{suffix}' at the other port"
-                )
-
-
-def _directed(
-    one: tuple[Part, str], two: tuple[Part, str]
-) -> tuple[tuple[Part, str], tuple[Part, str]]:
-    causality = [part.variables[name].causality for part, name in (one, two)]
-    if causality == ["output", "input"]:
-        return one, two
-    if causality == ["input", "output"]:
-        return two, one
-    raise StructureError(
-        f"connection '{one[0].name}.{one[1]}' ({causality[0]}) - '{two[0].name}.{two[1]}' "
-        f"({causality[1]}): it must join an output and an input"
-    )
-
-
 def _connection(
-    output: tuple[Part, str],
-    input_: tuple[Part, str],
+    output: Place,
+    input_: Place,
     index: Mapping[str, int],
     unchecked: dict[tuple[str, ...], list[str]],
 ) -> Connection:

@@ -3,22 +3,22 @@
 name = "gearbox"
 description = "..."
 
-connections = [["gear_mesh.pinion_left", "bearing_supports.shaft.pinion_left"], ...]
+connections = [["gears.pinion_left", "bearings.shaft.pinion_left"], ...]
 gear = "my_pair.toml"            # optional: of the gear pair; or { PATH = "FILE", ... } of several
 housing = "my_housing"           # optional, likewise: folder of data, dimensions, or FMU
 
-[parts.gear_mesh]
-component = "gear_mesh"          # or fmu = "file.fmu", or system = "name or folder"
+[parts.gears]
+component = "NAME"               # or fmu = "file.fmu", or system = "name or folder"
 set = { backlash = 1.8e-4 }
 
 [ports]                          # offered to an outer system
-pinion = "gear_mesh.pinion"
+pinion = "gears.pinion"
 
 [channels]                       # result columns on which errors are measured
-bearing_force = ["bearing_supports.shaft.*.f_?"]
+bearing_force = ["bearings.shaft.*.f_?"]
 
 [sensors.A]                      # see `cosim.structure.sensors`
-of = "modal_housing.A.v_z"
+of = "housing.A.v_z"
 """
 
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """The C file that describes one component to the wrapper; see component.h for every entry."""
 
-import math
-import string
 from collections.abc import Container, Iterable, Mapping, Sequence
 
 from herringbone.components.resources.loader import ResourceLoader
@@ -13,9 +11,9 @@ from herringbone.core.declaring.roles import Quantity
 from herringbone.core.declaring.variable import NODES, Causality, Variability
 from herringbone.fmi import interface
 from herringbone.fmi.model_description import identifier
+from herringbone.fmi.native.c_text import array, number, quoted, string_array
 from herringbone.fmi.used_states import UsedStates
 
-_PLAIN = frozenset(string.ascii_letters + string.digits + " !#$%&'()*+,-./:;<=>@[]^_`{|}~")
 _ENTRY_POINTS = """\
 int32_t hb_step(double *b, double *w, double t, double h);
 void hb_rhs(double *b, double t, double *dx);
@@ -49,20 +47,20 @@ def component_source(used: UsedStates) -> str:
         "#include <stddef.h>",
         '#include "component.h"',
         _ENTRY_POINTS,
-        _array("HbReal reals", _reals(declaration, block)),
-        _texts("names", (v.name if v else "" for v in _unlike_nodes(declaration, block))),
-        _texts("units", (v.unit if v else "" for v in _unlike_nodes(declaration, block))),
-        _array("uint8_t access", _access(declaration, block, states)),
-        _array("uint8_t extents", _extents(used)),
-        _array("uint32_t rates", _rates(declaration, block)),
-        _array("uint32_t exchanged", states),
-        _array("HbVector vectors", _vectors(used)),
+        array("HbReal reals", _reals(declaration, block)),
+        string_array("names", (v.name if v else "" for v in _unlike_nodes(declaration, block))),
+        string_array("units", (v.unit if v else "" for v in _unlike_nodes(declaration, block))),
+        array("uint8_t access", _access(declaration, block, states)),
+        array("uint8_t extents", _extents(used)),
+        array("uint32_t rates", _rates(declaration, block)),
+        array("uint32_t exchanged", states),
+        array("HbVector vectors", _vectors(used)),
         *_grammars(declaration.texts),
-        _array("HbRunsOn runs_on", _runs_on(component)),
-        _array("char *const not_settled", map(_string, hosting.not_settled if hosting else ())),
-        _array("HbRemark remarks", _remarks(component)),
-        _array("HbText texts", _text_entries(declaration.texts)),
-        _array("HbRefusal refusals", (f"{{{r.text}, {_string(r.format)}}}" for r in refusals)),
+        array("HbRunsOn runs_on", _runs_on(component)),
+        array("char *const not_settled", map(quoted, hosting.not_settled if hosting else ())),
+        array("HbRemark remarks", _remarks(component)),
+        array("HbText texts", _text_entries(declaration.texts)),
+        array("HbRefusal refusals", (f"{{{r.text}, {quoted(r.format)}}}" for r in refusals)),
     ]
     entries = _entries(used, states, loader, len(refusals))
     rows = "".join(f"    .{name} = {value},\n" for name, value in entries.items())
@@ -83,9 +81,9 @@ def _entries(
     component, declaration = used.component, used.component.declaration
     hosting, by_tolerance = component.hosting, component.by_tolerance
     return {
-        "name": _string(component.name),
-        "token": _string(identifier(component, used.built_with)),
-        "sources": _string(sources_key()),
+        "name": quoted(component.name),
+        "token": quoted(identifier(component, used.built_with)),
+        "sources": quoted(sources_key()),
         "states": declaration.state_count,
         "visible_states": len(declaration.states),
         "first_input": declaration.first_input,
@@ -137,48 +135,11 @@ def _entries(
     }
 
 
-def _array(name: str, entries: Iterable[object]) -> str:
-    """A C array, or a null pointer if it is empty."""
-    rows = "".join(f"    {entry},\n" for entry in entries)
-    kind, _, plain = name.partition(" ")
-    return (
-        f"static const {name}[] = {{\n{rows}}};\n"
-        if rows
-        else (f"static const {kind} *const {plain} = NULL;\n")
-    )
-
-
-def _texts(name: str, texts: Iterable[str]) -> str:
-    """Texts one behind the other, each with its end."""
-    rows = "".join(f'    "{_escaped(text)}\\0"\n' for text in texts)
-    return f"static const char {name}[] =\n{rows};\n"
-
-
-def _escaped(text: str) -> str:
-    """A text as it stands in a C string; the only way by which text enters the source.
-
-    What is no plain character, and ?, of which trigraphs are made, becomes an octal number.
-    """
-    return "".join(
-        chr(byte) if chr(byte) in _PLAIN else f"\\{byte:03o}" for byte in text.encode("utf-8")
-    )
-
-
-def _string(text: str) -> str:
-    return f'"{_escaped(text)}"'
-
-
-def _number(value: float) -> str:
-    if math.isinf(value):
-        return "INFINITY" if value > 0.0 else "-INFINITY"
-    return float(value).hex()
-
-
 def _real(variable: Variable, node: int) -> str:
     numbers = (variable.start, variable.minimum, variable.maximum, variable.nominal)
     method = variable.quantity is Quantity.MICRO_STEP or variable.name == INTERFACE_DEGREE
     kinds = int(variable.whole), node, int(bool(variable.items)), int(method)
-    return f"{{{', '.join([*map(_number, numbers), *map(str, kinds)])}}}"
+    return f"{{{', '.join([*map(number, numbers), *map(str, kinds)])}}}"
 
 
 def _block(used: UsedStates) -> list[Variable | None]:
@@ -201,7 +162,7 @@ def _runs_on(component: Component) -> Iterable[str]:
 
 def _remarks(component: Component) -> Iterable[str]:
     for remark in component.by_tolerance.remarks if component.by_tolerance else ():
-        yield f"{{{_string(remark.format)}, {int(remark.warning)}}}"
+        yield f"{{{quoted(remark.format)}, {int(remark.warning)}}}"
 
 
 def _nodes(declaration: Declaration) -> dict[int, int]:
@@ -271,7 +232,7 @@ def _vectors(used: UsedStates) -> Iterable[str]:
         v = of.vector
         if v.text:
             length, text = declaration.first_table + v.length, texts.index(v.text)
-            yield f"{{{len(of.nominals)}, {length}, {text}, {_string(v.elements)}}}"
+            yield f"{{{len(of.nominals)}, {length}, {text}, {quoted(v.elements)}}}"
 
 
 def _grammars(texts: Iterable[Text]) -> Iterable[str]:
@@ -283,18 +244,18 @@ def _grammars(texts: Iterable[Text]) -> Iterable[str]:
             for kind, values in (("units", column.units), ("words", column.words)):
                 name = f"{kind}_{i}_{k}"
                 if values:
-                    yield _array(f"char *const {name}", [*map(_string, values), "NULL"])
+                    yield array(f"char *const {name}", [*map(quoted, values), "NULL"])
                 lists.append(name if values else "NULL")
             flags = f"{int(column.other_words)}, {int(column.rest)}"
-            rows.append(f"{{{_string(column.name)}, {', '.join(lists)}, {flags}}}")
-        yield _array(f"HbColumn columns_{i}", rows)
+            rows.append(f"{{{quoted(column.name)}, {', '.join(lists)}, {flags}}}")
+        yield array(f"HbColumn columns_{i}", rows)
 
 
 def _text_entries(texts: Sequence[Text]) -> Iterable[str]:
     place = {text.name: i for i, text in enumerate(texts)}
     for i, text in enumerate(texts):
-        name, start, header = (_string(s) for s in (text.name, text.start, text.header))
+        name, start, header = (quoted(s) for s in (text.name, text.start, text.header))
         counts = len(text.columns), text.header_count
-        section = _string(text.section) if text.section else "NULL"
+        section = quoted(text.section) if text.section else "NULL"
         where = f"{section}, {place[text.shared or text.name]}"
         yield f"{{{name}, {start}, columns_{i}, {counts[0]}, {header}, {counts[1]}, {where}}}"

@@ -1,1 +1,1 @@
-"""Files of gear pairs: gear files, REXS, and the data of the component gear_mesh."""
+"""Files of gear pairs: gear files, REXS, and the data that a gear pair reads."""

@@ -19,8 +19,8 @@ from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Kind, Laboratory
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.fmi.packed.documentation import FLANGE_MODELS
-from herringbone.running.foreign.foreign_parts import signature_of, start_inputs
 from herringbone.running.foreign.started import own_step, started
+from herringbone.running.foreign.trials import signature_of, start_inputs
 
 _TRIED = (2e-4, 1e-4, 5e-5, 1e-3)
 """Steps of further trials [s], while the model is too far from the FMU: an FMU of a gearbox

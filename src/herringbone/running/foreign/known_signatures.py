@@ -14,7 +14,7 @@ from herringbone.cosim.signature.signature import Rate
 from herringbone.cosim.structure.system import PartSpec
 from herringbone.running.content import contents_of
 
-_TRIALS = "herringbone.cosim.signature.probe", "herringbone.running.foreign.foreign_parts"
+_TRIALS = "herringbone.cosim.signature.probe", "herringbone.running.foreign.trials"
 
 
 def known_signature(spec: PartSpec, step: float, find: Callable[[], Signature]) -> Signature:

@@ -25,12 +25,8 @@ from herringbone.cosim.signature.trial import Refused
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.running.foreign.foreign_parts import (
-    alike,
-    found_signature,
-    start_inputs,
-    understood,
-)
+from herringbone.running.foreign.foreign_parts import alike, understood
+from herringbone.running.foreign.trials import found_signature, start_inputs
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.running.pairs.mesh_phases import steady_values

@@ -125,13 +125,17 @@ def _recorded(
     """
     if not record:
         return core.names
-    foreign = [
-        f"{part.name}.{name}"
-        for part in strangers
+    return core.chosen(record, system.channels, _outputs(strangers))
+
+
+def _outputs(parts: Sequence[Part]) -> list[str]:
+    """Columns of all outputs of parts."""
+    return [
+        column(part, name)
+        for part in parts
         for name, v in part.variables.items()
         if v.causality == "output"
     ]
-    return core.chosen(record, system.channels, foreign)
 
 
 def _free_name(outer: System) -> str:
@@ -153,13 +157,7 @@ def with_channels(system: System, columns: Sequence[str]) -> System:
 
 def with_recorded_channels(system: System, parts: Sequence[Part]) -> System:
     """The same by what parts have."""
-    outputs = [
-        column(part, name)
-        for part in parts
-        for name, v in part.variables.items()
-        if v.causality == "output"
-    ]
-    return with_channels(system, outputs)
+    return with_channels(system, _outputs(parts))
 
 
 def suit(parts: Sequence[Part], step: float) -> None:

@@ -15,7 +15,7 @@ from herringbone.cosim.signature import Kind
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.running.foreign.foreign_parts import found_signature, start_inputs
+from herringbone.running.foreign.trials import found_signature, start_inputs
 from herringbone.running.loading import instances
 from herringbone.running.settling.stranger import NoSettledStartError, Stranger
 

@@ -22,7 +22,8 @@ from herringbone.core import HerringboneError
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import TIME, Result
 from herringbone.result.verification import Verification
-from herringbone.running.coupled import Asked, Coupled
+from herringbone.running.coupled import Coupled
+from herringbone.running.coupling_choice import Asked
 from herringbone.running.reporting.run_result import with_coupling_row
 from herringbone.running.steps.verification import scaled, with_half_step, with_step
 from herringbone.scenes import Scene

@@ -20,7 +20,7 @@ from herringbone.core.declaring.roles import Role
 from herringbone.cosim.algorithms import LI, tolerance_of, with_tolerance
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
-from herringbone.running.coupled import Asked
+from herringbone.running.coupling_choice import Asked
 from herringbone.running.steps.inner_steps import with_inner_steps
 from herringbone.running.steps.inner_steps_of_runs import SHARE
 from herringbone.running.steps.suited_step import records_apart

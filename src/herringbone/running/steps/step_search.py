@@ -21,7 +21,8 @@ from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
 from herringbone.result.result import Result
-from herringbone.running.coupled import Asked, Coupled, coupled
+from herringbone.running.coupled import Coupled, coupled
+from herringbone.running.coupling_choice import Asked
 from herringbone.running.loading import in_one_run
 from herringbone.running.operating.lean import with_row
 from herringbone.running.reporting.progress import Progress

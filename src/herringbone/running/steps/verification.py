@@ -16,7 +16,8 @@ from herringbone.cosim.algorithms import AUTO, Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.result.verification import Verification
-from herringbone.running.coupled import Asked, Coupled, coupled
+from herringbone.running.coupled import Coupled, coupled
+from herringbone.running.coupling_choice import Asked
 from herringbone.running.reporting.progress import Progress
 from herringbone.running.reporting.run_result import with_coupling_row
 from herringbone.scenes import Scene

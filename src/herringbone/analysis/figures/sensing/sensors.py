@@ -2,8 +2,8 @@
 
 A sensor acts on nothing, so that no loop needs to step it: the bearing forces of the rows drive the
 housing's oscillators (`modal_response`), their velocity at the sensor's point runs through the
-chain of the component that is a sensor (`velocity_sensor`). Rows whose distance does not divide the
-distance of samples are interpolated by cubic splines.
+chain of the component that is a sensor. Rows whose distance does not divide the distance of samples
+are interpolated by cubic splines.
 """
 
 import math

@@ -1,0 +1,161 @@
+"""How a prepared system is coupled: what is asked, and what is chosen where nothing is."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from herringbone.analysis.stability.instability import warn_if_unstable
+from herringbone.analysis.stability.steps.step_limits import clocks_of
+from herringbone.core import HerringboneError
+from herringbone.core.activity import activity
+from herringbone.core.part import Part
+from herringbone.cosim.algorithms import LI, Algorithm, Jacobi, choose_algorithm, start_step
+from herringbone.cosim.structure.system import System
+from herringbone.result.budget import BudgetRow
+from herringbone.running.foreign.foreign_parts import understood
+from herringbone.running.foreign.interfaces import unfed
+from herringbone.running.foreign.surrogates import surrogates_of, turned_back, under_load
+from herringbone.running.loading import instances
+from herringbone.running.remembered_answers import bond_of, stability_warning
+from herringbone.running.steps.suited_step import suited_step
+from herringbone.scenes import Scene
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of the coupling; None: chosen by what the parts are.
+
+    Attributes:
+        algorithm: of the coupling.
+        step: macro step [s].
+        tolerance: relative error of the run.
+        slow: bodies that step once in several macro steps.
+        fmu: kind of the parts' FMUs.
+        probe: find out what foreign FMUs are.
+        record_step: that the caller gave [s].
+        all_points: keep all communication points beside the result.
+        warn: say whether the step is stable.
+        notes: lines that are known already.
+        inner_step: longest of the own parts [s], of which an adaptive step takes account.
+        part_tolerance: that parts are told; None: none.
+        fuse: condense all parts of this package into one, which is coupled with the others.
+        record: of a fused run, patterns of outputs, or groups of channels, that are recorded.
+        core_step: longest base step of the condensed parts [s].
+        judge: make the error budget, and lines on what does not fit together; False for runs that
+            only tell the error of another.
+        left_out: row of the error budget, of what the model leaves out.
+        by_default: the tolerance is the default one, as nothing was said.
+    """
+
+    fmu: str
+    algorithm: Algorithm | None = None
+    step: float | None = None
+    tolerance: float | None = None
+    slow: Mapping[str, int] | None = None
+    probe: bool = True
+    record_step: float | None = None
+    all_points: bool = False
+    warn: bool = True
+    notes: Sequence[str] = field(default=())
+    inner_step: float = 0.0
+    part_tolerance: float | None = None
+    fuse: bool = False
+    record: tuple[str, ...] = ()
+    core_step: float | None = None
+    judge: bool = True
+    left_out: BudgetRow | None = None
+    by_default: bool = False
+
+
+class Way(NamedTuple):
+    """How parts are coupled.
+
+    Attributes:
+        parts: as the coupling takes them.
+        algorithm: of the coupling.
+        step: macro step [s].
+        wanted: macro step that was asked for, or follows from the records [s]; None: chosen.
+        bond: highest frequency of all bonds together [rad/s]; None if it is not known.
+        lines: on what was chosen, and what is known of it.
+    """
+
+    parts: Sequence[Part]
+    algorithm: Algorithm
+    step: float
+    wanted: float | None
+    bond: float | None
+    lines: list[str]
+
+
+def way_of(
+    system: System, scene: Scene, asked: Asked, exchanging: System, opened: Sequence[Part]
+) -> Way:
+    """Understand the parts, and choose what was not asked for.
+
+    Args:
+        system: with all values.
+        scene: with duration and record step.
+        asked: of the coupling.
+        exchanging: the system as it is coupled, of the opened parts.
+        opened: its parts, instantiated.
+
+    Raises:
+        HerringboneError: a part cannot be used.
+    """
+    parts, algorithm, wanted, lines = opened, asked.algorithm, asked.step, []
+    if not system.connections and algorithm is None:
+        wanted = asked.step or min(scene.record_step, scene.t_end)
+        algorithm = Jacobi(order=0)
+        lines.append(f"auto: {algorithm}, once per record, because nothing is connected")
+    elif asked.probe and system.connections:
+        trial = asked.step or (algorithm or LI()).start_step
+        parts, found = understood(exchanging, opened, instances, trial)
+        lines += [*found, *unfed(exchanging, parts)]
+    if algorithm is None:
+        algorithm, why = choose_algorithm(parts, wanted)
+        lines.append(why)
+    bond = bond_of(system)
+    own = start_step(algorithm, parts)
+    step = wanted or suited_step(system, scene, algorithm, own, bond, asked.record_step)
+    if wanted is None and step > own:
+        lines.append(
+            f"auto: steps of {step:.3g} s, because no bond is faster than {bond:.3g} rad/s"
+        )
+    if asked.warn:
+        lines += _stability_notes(system, parts, algorithm, step, scene.t_end, asked)
+    return Way(parts, algorithm, step, wanted, bond, lines)
+
+
+def _stability_notes(
+    system: System,
+    parts: Sequence[Part],
+    algorithm: Algorithm,
+    step: float,
+    t_end: float,
+    asked: Asked,
+) -> list[str]:
+    """A line if the step is unstable; nothing is predicted with slow bodies, or without trials.
+
+    An adaptive step needs none: it finds the limit, and goes below.
+    """
+    known = not system.foreign_parts or (asked.probe and system.connections)
+    if algorithm.adaptive or asked.slow or not known:
+        return []
+    if asked.fuse:
+        return ["whether the step is stable is not known: that of fused parts is not predicted"]
+    what = f"predicting whether {system.name} is stable"
+    if not system.foreign_parts:
+        with activity(what):
+            warning = stability_warning(system, algorithm, step, t_end, under_load)
+        return [warning] if warning else []
+    with activity(what), surrogates_of(system, parts, step) as found:
+        if found.missing:
+            return [f"whether the step is stable is not known: {found.why}"]
+        for clock in clocks_of(found.strangers):
+            try:
+                clock.parts_of_period(step)
+            except HerringboneError as error:
+                return [f"whether the step is stable is not known: {error}"]
+        loaded = turned_back(under_load(system))
+        warning = warn_if_unstable(loaded, algorithm, step, t_end, strangers=found.strangers)
+    return [warning] if warning else []

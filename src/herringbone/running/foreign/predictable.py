@@ -1,0 +1,66 @@
+"""A system as what is known of its coupling before a run is predicted from it."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from herringbone.analysis.stability.linear_parts import Strangers
+from herringbone.cosim.algorithms import LI
+from herringbone.cosim.structure.system import System
+from herringbone.running.foreign.surrogates import (
+    opened_surrogates,
+    turned_back,
+    under_load,
+    without_missing,
+)
+from herringbone.running.known_limits import KnownLimits
+from herringbone.running.prepared import Wishes, prepared
+
+
+class Predictable(NamedTuple):
+    """A system under load, without parts for which nothing stands.
+
+    Attributes:
+        system: at angles where differences are exact; for matrices.
+        started: the same as runs start.
+        scene: its name.
+        strangers: what stands for foreign parts.
+        missing: lines on parts for which nothing stands.
+        known: its limits that were found before.
+    """
+
+    system: System
+    started: System
+    scene: str
+    strangers: Strangers
+    missing: tuple[str, ...]
+    known: KnownLimits
+
+
+@contextmanager
+def predictable(
+    system: str | Path, scene: str | None, wishes: Wishes, tell: Callable[[str], None]
+) -> Iterator[Predictable]:
+    """A system that predictions can be made of, as long as the context lasts.
+
+    Args:
+        system, scene, wishes: see `prepared`.
+        tell: called with lines on how it came about.
+
+    Raises:
+        HerringboneError: something about the input is wrong, or nothing is left to be predicted.
+    """
+    trials = LI().start_step
+    started, chosen, notes = prepared(system, scene, wishes, trial_step=trials)
+    for note in notes:
+        tell(note)
+    started = under_load(started)
+    exact = turned_back(started)
+    with opened_surrogates(exact, trials) as foreign:
+        exact, missing = without_missing(exact, foreign)
+        started, _ = without_missing(started, foreign)
+        for line in missing:
+            tell(line)
+        known = KnownLimits(started, trials)
+        yield Predictable(exact, started, chosen.name, foreign.strangers, missing, known)
