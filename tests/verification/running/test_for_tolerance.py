@@ -17,7 +17,7 @@ from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.steps.for_tolerance import by_default, for_tolerance
 from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps
 from herringbone.running.steps.inner_steps_of_runs import with_inner_steps_of
-from herringbone.running.steps.tried import Search
+from herringbone.running.steps.search import Search
 
 GEAR, MOTOR = "gearbox.gear_mesh.micro_step", "drive_motor.micro_step"
 
