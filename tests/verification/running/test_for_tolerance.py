@@ -190,7 +190,7 @@ def test_each_group_falls_with_a_power_of_its_own(monkeypatch):
         pairs = {name: (law(before), law(found)) for name, law in laws.items()}
         return Apart({name: long - short for name, (long, short) in pairs.items()}, "", 0.0)
 
-    monkeypatch.setattr("herringbone.running.steps.tried.apart", differences)
+    monkeypatch.setattr("herringbone.running.steps.search.apart", differences)
     for step in steps:
         recording = SimpleNamespace(step=step, wall_seconds=0.0)
         result = SimpleNamespace(
