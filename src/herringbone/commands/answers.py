@@ -39,7 +39,7 @@ def answered(options: argparse.Namespace, find: Callable[[Tell], Told]) -> Told:
     from herringbone.core.caching.answers import Answers  # noqa: PLC0415 (looks at all sources)
 
     asked = {k: v for k, v in sorted(vars(options).items()) if k not in _NOT_ASKED}
-    answers = Answers(options.command.__qualname__, repr(asked))
+    answers = Answers(options.command.__module__, repr(asked))
     if (known := answers.known()) is not None:
         for line in known["said"]:
             say(line)

@@ -11,7 +11,7 @@ from herringbone.commands.options import (
     given_by,
     replacements,
 )
-from herringbone.commands.output import say
+from herringbone.commands.output import say, show
 
 if TYPE_CHECKING:
     from herringbone.running.prepared import Wishes
@@ -30,8 +30,8 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--json", action="store_true", help="print the figures as JSON")
 
 
-def bench(options: argparse.Namespace) -> str:
-    """Measure; returns the tables, or JSON.
+def run(options: argparse.Namespace) -> int:
+    """Measure, and show the tables, or JSON.
 
     Raises:
         HerringboneError: there is no such part, or something cannot be built or run.
@@ -54,7 +54,8 @@ def bench(options: argparse.Namespace) -> str:
             say(f"measuring {name} ...")
             table, figures[name] = measure[name]()
             tables.append(table)
-    return json.dumps(figures, indent=2) if options.json else "\n\n".join(tables)
+    show(json.dumps(figures, indent=2) if options.json else "\n\n".join(tables))
+    return 0
 
 
 def _wishes(options: argparse.Namespace) -> "Wishes | None":

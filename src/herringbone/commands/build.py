@@ -1,11 +1,10 @@
 """The command `build`: FMUs of components, Python or native."""
 
 import argparse
-from collections.abc import Iterator
 from pathlib import Path
 
 from herringbone.commands.options import assignments
-from herringbone.commands.output import check_writable
+from herringbone.commands.output import check_writable, show
 
 _ALL = "all"
 _SET = "COMPONENT.PARAMETER=FILE"
@@ -59,8 +58,8 @@ def untested(platforms: list[str]) -> list[str]:
     return [f"built, not run: {', '.join(names)}"] if names else []
 
 
-def build(options: argparse.Namespace) -> Iterator[str]:
-    """Build; yields the files and what is to be known of them.
+def run(options: argparse.Namespace) -> int:
+    """Build, and show the files and what is to be known of them.
 
     Raises:
         HerringboneError: something about the options is wrong, or the build fails.
@@ -89,5 +88,6 @@ def build(options: argparse.Namespace) -> Iterator[str]:
         fmi=options.fmi,
         files={path: Path(file) for path, file in files.items()},
     )
-    yield from map(str, fmus)
-    yield from untested(platforms)
+    for line in (*map(str, fmus), *untested(platforms)):
+        show(line)
+    return 0

@@ -1,13 +1,12 @@
 """The command `export`: a system as .ssp file, or as one native FMU."""
 
 import argparse
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from herringbone.commands.build import add_platform_options, chosen_platforms, untested
-from herringbone.commands.options import add_scene, files_of_parts
-from herringbone.commands.output import check_writable
+from herringbone.commands.options import add_scene, add_start_values, given_by
+from herringbone.commands.output import check_writable, show
 from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import GEARS
 
@@ -24,7 +23,7 @@ _SHOWN = {
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
-    """Declare the command's options, `--set` excepted."""
+    """Declare the command's options."""
     add_scene(sub)
     sub.add_argument("--step", type=float, help="communication step size in s (.ssp only)")
     sub.add_argument("--as-fmu", action="store_true", help="one native FMU of the whole system")
@@ -68,10 +67,11 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="file; if not given SYSTEM.ssp, with --as-fmu SYSTEM.fmu, and with --fmi 3 "
         "SYSTEM_fmi3.fmu; a .ssv file with --as-fmu: start values of the scene alone",
     )
+    add_start_values(sub)
 
 
-def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> list[str]:
-    """Export; returns the file and what is to be known of it.
+def run(options: argparse.Namespace) -> int:
+    """Export, and show the file and what is to be known of it.
 
     Raises:
         HerringboneError: something about the options is wrong, or the export fails.
@@ -79,7 +79,9 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
     _check(options)
     if options.output:
         check_writable(options.output.parent, options.output)
-    return _one_fmu(options, values) if options.as_fmu else _ssp_file(options, values)
+    for line in (_one_fmu if options.as_fmu else _ssp_file)(options):
+        show(line)
+    return 0
 
 
 def _check(options: argparse.Namespace) -> None:
@@ -102,21 +104,20 @@ def _check(options: argparse.Namespace) -> None:
         raise ParameterError("--platforms chooses among native FMUs; leave out --python")
 
 
-def _one_fmu(options: argparse.Namespace, values: Mapping[str, float | str]) -> list[str]:
+def _one_fmu(options: argparse.Namespace) -> list[str]:
     """The whole system as one FMU."""
     from herringbone.cosim.structure.system_file import short_name  # noqa: PLC0415
     from herringbone.running.exporting.export import fmu_file_name  # noqa: PLC0415
     from herringbone.running.exporting.system_fmu import export_fmu  # noqa: PLC0415
 
     platforms = chosen_platforms(options)
-    lines, scene = _planned(options, values) if options.plan else ([], options.scene)
+    lines, scene = _planned(options) if options.plan else ([], options.scene)
     file = export_fmu(
         options.system,
         options.output or Path(fmu_file_name(short_name(options.system), options.fmi)),
         outside=options.outside,
         scene=scene,
-        values=values,
-        **files_of_parts(options),
+        **given_by(options),
         platforms=platforms,
         fmi=options.fmi,
         wanted=_wanted(options),
@@ -124,7 +125,7 @@ def _one_fmu(options: argparse.Namespace, values: Mapping[str, float | str]) -> 
     return [*lines, str(file), *untested(platforms)]
 
 
-def _ssp_file(options: argparse.Namespace, values: Mapping[str, float | str]) -> list[str]:
+def _ssp_file(options: argparse.Namespace) -> list[str]:
     """An FMU for each part, and how they are connected."""
     from herringbone.cosim.structure.system_file import short_name  # noqa: PLC0415
     from herringbone.running.exporting.export import export_ssp  # noqa: PLC0415
@@ -135,8 +136,7 @@ def _ssp_file(options: argparse.Namespace, values: Mapping[str, float | str]) ->
         options.output or Path(f"{short_name(options.system)}.ssp"),
         scene=options.scene,
         step=options.step,
-        values=values,
-        **files_of_parts(options),
+        **given_by(options),
         native=not options.python,
         platforms=platforms,
         nested=options.nested,
@@ -144,15 +144,12 @@ def _ssp_file(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     return [str(file), *untested(platforms)]
 
 
-def _planned(
-    options: argparse.Namespace, values: Mapping[str, float | str]
-) -> "tuple[list[str], Scene]":
+def _planned(options: argparse.Namespace) -> "tuple[list[str], Scene]":
     """A plan's text, and its scene."""
     from herringbone.studies.planning.plan import plan  # noqa: PLC0415 (numba)
     from herringbone.studies.planning.text import plan_text  # noqa: PLC0415
 
-    files = files_of_parts(options)
-    found = plan(options.system, scene=options.scene, values=values, **files, for_fmu=True)
+    found = plan(options.system, scene=options.scene, **given_by(options), for_fmu=True)
     return plan_text(found), found.scene
 
 

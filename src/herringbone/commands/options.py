@@ -45,6 +45,13 @@ def add_operating_point(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--torque", type=float, help="at the pinion in N m; the scene's if not given")
 
 
+def add_comparison(sub: argparse.ArgumentParser) -> None:
+    """Declare scene, operating point and algorithms, of commands that compare these."""
+    add_scene(sub)
+    add_operating_point(sub)
+    sub.add_argument("--algorithm", nargs="+", help="NAME or NAME:key=value,...; all if not given")
+
+
 def add_kind(sub: argparse.ArgumentParser) -> None:
     """Declare the kind of the parts' FMUs."""
     sub.add_argument(

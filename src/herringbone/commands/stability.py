@@ -3,7 +3,7 @@
 import argparse
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
@@ -11,8 +11,16 @@ from typing import TYPE_CHECKING
 
 from herringbone.commands.answers import Tell, Told, answered
 from herringbone.commands.checking import flange
-from herringbone.commands.options import files_of_parts, operating_point, replacements
-from herringbone.commands.output import check_writable, say
+from herringbone.commands.options import (
+    add_cells,
+    add_comparison,
+    add_replacements,
+    add_start_values,
+    given_by,
+    operating_point,
+    replacements,
+)
+from herringbone.commands.output import check_writable, say, show
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.places.files import write_whole
 
@@ -24,6 +32,7 @@ if TYPE_CHECKING:
 
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's own options."""
+    add_comparison(sub)
     sub.add_argument("--step", type=float, help="only say what happens at this step in s, and why")
     sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error asked for")
     sub.add_argument(
@@ -35,14 +44,23 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("-o", "--output", type=Path, help="folder for the files")
     flange.add_options(sub)
     sub.add_argument("--json", action="store_true", help="print one JSON object")
+    add_replacements(sub)
+    add_cells(sub)
+    add_start_values(sub)
 
 
-def stability(options: argparse.Namespace, values: Mapping[str, float | str]) -> str:
-    """Predict, write files if a folder is given, and return what to show.
+def run(options: argparse.Namespace) -> int:
+    """Predict, write files if a folder is given, and show what is known.
 
     Raises:
         HerringboneError: something about the input is wrong.
     """
+    show(_answer(options))
+    return 0
+
+
+def _answer(options: argparse.Namespace) -> str:
+    """What to show; files are written."""
     if flange.is_asked(options):
         told = answered(options, lambda tell: flange.flange_limits(options))
         return json.dumps(told.summary) if options.json else told.text
@@ -51,7 +69,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     if output:
         check_writable(output)
     panels: list[Panel] = []
-    find = partial(_predicted, options, values, panels)
+    find = partial(_predicted, options, panels)
     told = find(say) if options.atlas else answered(options, find)
     if options.step is not None:
         return json.dumps(told.summary) if options.json else told.text
@@ -67,12 +85,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     return "\n".join([told.text, *written])
 
 
-def _predicted(
-    options: argparse.Namespace,
-    values: Mapping[str, float | str],
-    panels: list["Panel"],
-    tell: Tell,
-) -> Told:
+def _predicted(options: argparse.Namespace, panels: list["Panel"], tell: Tell) -> Told:
     """What is predicted, of one step or of all; the panels of an atlas are added."""
     from tqdm import tqdm  # noqa: PLC0415
 
@@ -85,10 +98,9 @@ def _predicted(
     algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
     refuse_adaptive(algorithms, "stability is predicted for fixed steps")
     wishes = Wishes(
-        values=values,
         start=Start.EQUILIBRIUM,
         start_offset={},
-        **files_of_parts(options),
+        **given_by(options),
         replace_parts=replacements(options),
     )
     wishes = operated(options.system, options.scene, wishes, **operating_point(options))

@@ -11,7 +11,7 @@ import pytest
 from herringbone.analysis.accuracy.step_ladder import FEWEST_STEPS, charted_algorithms, ladder
 from herringbone.analysis.accuracy.variant_labels import variant_labels
 from herringbone.analysis.accuracy.work_precision import Point, WorkPrecision
-from herringbone.commands.chart import table
+from herringbone.commands.chart.report import table
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms import ALGORITHMS, parse_algorithm
 from herringbone.plotting.work_precision import chart_picture, write_chart

@@ -215,7 +215,7 @@ def test_cycles_are_seldom_searched_while_a_command_runs(monkeypatch, capsys):
         raise HerringboneError("no")
 
     found = []
-    monkeypatch.setattr("herringbone.commands.main._list", command)
+    monkeypatch.setattr("herringbone.commands.listing.command.run", command)
     main_module._parser.cache_clear()
     before = gc.get_threshold()
     gc.set_threshold(700, 10, 10)

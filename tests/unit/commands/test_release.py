@@ -13,7 +13,7 @@ import pytest
 from herringbone.commands.release.__main__ import SUMS, write_sums
 from herringbone.commands.release.wheel import with_record
 from herringbone.core import FmuError
-from herringbone.fmi.model_description import identifier
+from herringbone.fmi.description.common import identifier
 from herringbone.fmi.native.build import VERSIONS
 from herringbone.fmi.native.carried import carried_fmu, carried_name
 from herringbone.fmi.native.model import registered_model

@@ -17,7 +17,7 @@ from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.steps.for_tolerance import by_default, for_tolerance
 from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps
 from herringbone.running.steps.inner_steps_of_runs import with_inner_steps_of
-from herringbone.running.steps.tried import Search
+from herringbone.running.steps.search import Search
 
 GEAR, MOTOR = "gearbox.gear_mesh.micro_step", "drive_motor.micro_step"
 
@@ -190,7 +190,7 @@ def test_each_group_falls_with_a_power_of_its_own(monkeypatch):
         pairs = {name: (law(before), law(found)) for name, law in laws.items()}
         return Apart({name: long - short for name, (long, short) in pairs.items()}, "", 0.0)
 
-    monkeypatch.setattr("herringbone.running.steps.tried.apart", differences)
+    monkeypatch.setattr("herringbone.running.steps.search.apart", differences)
     for step in steps:
         recording = SimpleNamespace(step=step, wall_seconds=0.0)
         result = SimpleNamespace(

@@ -13,7 +13,7 @@ from herringbone.commands.options import (
     replacements,
 )
 from herringbone.commands.output import check_writable, limits_told, say, show
-from herringbone.commands.run.options import SLOW
+from herringbone.commands.run.options import SLOW, add_options
 from herringbone.core import EXIT_CODES, Outcome, OutcomeKind, ParameterError
 from herringbone.core.places.files import is_folder
 from herringbone.running.reporting.progress import Bar
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from herringbone.running.output.resumed import Resumed
     from herringbone.running.output.run_output import RunOutput
 
+__all__ = ["add_options", "run"]
 _NOT_KEPT = frozenset({"command", "debug", "json", "output", "overwrite", "resume"})
 """What is not kept for `--resume`."""
 

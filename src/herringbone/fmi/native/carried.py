@@ -7,7 +7,7 @@ from herringbone.core import FmuError
 from herringbone.core.places.paths import PACKAGE
 from herringbone.core.reading.archives import open_archive
 from herringbone.core.reading.xml import parse_xml
-from herringbone.fmi.model_description import identifier
+from herringbone.fmi.description.common import identifier
 from herringbone.fmi.native.model import Model
 from herringbone.fmi.native.platforms import Platform
 

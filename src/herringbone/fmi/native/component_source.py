@@ -10,7 +10,7 @@ from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.declaring.roles import Quantity
 from herringbone.core.declaring.variable import NODES, Causality, Variability
 from herringbone.fmi import interface
-from herringbone.fmi.model_description import identifier
+from herringbone.fmi.description.common import identifier
 from herringbone.fmi.native.c_text import array, number, quoted, string_array
 from herringbone.fmi.used_states import UsedStates
 

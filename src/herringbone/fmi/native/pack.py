@@ -7,8 +7,8 @@ from xml.etree.ElementTree import Element, indent, tostring
 
 from herringbone.core import Component
 from herringbone.fmi.archive import write_archive
-from herringbone.fmi.model_description import model_description
-from herringbone.fmi.model_description_3 import model_description_3
+from herringbone.fmi.description.fmi2 import model_description
+from herringbone.fmi.description.fmi3 import model_description_3
 from herringbone.fmi.native.model import Model
 from herringbone.fmi.native.platforms import Platform
 from herringbone.fmi.packed.documentation import (

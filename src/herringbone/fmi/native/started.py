@@ -9,7 +9,7 @@ from fmpy.model_description import ModelDescription
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import HerringboneError
 from herringbone.core.declaring.started import with_starts
-from herringbone.fmi.model_description import identifier
+from herringbone.fmi.description.common import identifier
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model, registered_model
 

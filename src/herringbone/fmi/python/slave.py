@@ -17,7 +17,9 @@ from herringbone.core.caching.keys import sources_key
 from herringbone.core.declaring.units import quantity
 from herringbone.core.declaring.variable import Causality
 from herringbone.core.instance import check_value
-from herringbone.fmi import interface, model_description
+from herringbone.fmi import interface
+from herringbone.fmi.description.common import LOG_CATEGORIES
+from herringbone.fmi.description.fmi2 import model_description
 from herringbone.fmi.python import state
 from herringbone.fmi.python.guarded_slave import GuardedSlave
 from herringbone.fmi.python.state import FmuState
@@ -35,7 +37,7 @@ class ComponentSlave(GuardedSlave):
     The script of an FMU derives from it and binds `do_step` to `advance` and `terminate` to `end`.
     """
 
-    log_categories = model_description.LOG_CATEGORIES
+    log_categories = LOG_CATEGORIES
 
     def __init__(self, **kwargs: object) -> None:
         super().__init__(**kwargs)
@@ -76,7 +78,7 @@ class ComponentSlave(GuardedSlave):
     def to_xml(self, model_options: object = None) -> Element:
         """modelDescription.xml, made from the declaration."""
         del model_options
-        return model_description.model_description(self._component)
+        return model_description(self._component)
 
     def setup_experiment(
         self, start_time: float, stop_time: float | None, tolerance: float | None

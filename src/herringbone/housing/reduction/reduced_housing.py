@@ -10,7 +10,8 @@ import scipy.sparse as sp
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.housing.modal_model import SEAT_DOFS, ModalHousing
 from herringbone.housing.reduction.bound import choose_modes, make_certificate, receptance_bound
-from herringbone.housing.reduction.reduce import residual_modes
+from herringbone.housing.reduction.held_model import HeldModel
+from herringbone.housing.reduction.residual import residual_modes
 
 RESIDUAL_DAMPING = 0.05
 """Damping ratio of residual pseudo modes: assumed; above the band it hardly shows."""
@@ -107,9 +108,7 @@ def _residual_of(housing: ModalHousing, keep: np.ndarray) -> tuple[np.ndarray, n
     seats = housing.seat_shapes[:, elastic].T
     kept = np.flatnonzero(np.isin(at, keep))
     vectors, frequency_hz = residual_modes(
-        sp.diags_array(omega**2),
-        sp.eye_array(omega.size),
-        seats,
+        HeldModel(sp.diags_array(omega**2), sp.eye_array(omega.size), seats),
         seats / omega[:, None] ** 2,
         np.eye(omega.size)[:, kept],
         omega[kept],

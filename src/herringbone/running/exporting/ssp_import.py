@@ -7,7 +7,7 @@ from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.ssp.read import read_ssp, read_stop_time
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.fmi.model_description import model_description
+from herringbone.fmi.description.fmi2 import model_description
 from herringbone.fmi.native.started import starts_of_own_fmu
 from herringbone.scenes import Scene, Start
 

@@ -29,7 +29,7 @@ from herringbone.running.reporting.progress import Progress
 from herringbone.running.reporting.run_result import judged
 from herringbone.running.steps.inner_steps import stable_inner_steps
 from herringbone.running.steps.inner_steps_of_runs import with_inner_steps_of
-from herringbone.running.steps.tried import Search
+from herringbone.running.steps.search import Search
 from herringbone.scenes import Scene
 
 _PIECES = 47

@@ -13,7 +13,7 @@ from herringbone.core import Component, Declaration, Variable
 from herringbone.core.declaring.declaration import node_name
 from herringbone.core.declaring.variable import NODES, Causality
 from herringbone.fmi import interface
-from herringbone.fmi.model_description import (
+from herringbone.fmi.description.common import (
     AUTHOR,
     add_experiment,
     add_items,

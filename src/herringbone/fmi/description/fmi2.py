@@ -1,35 +1,27 @@
 """modelDescription.xml of a component (FMI 2.0, co-simulation), made from its declaration alone."""
 
-import math
-import uuid
 from importlib.metadata import version
 from typing import Any, Final
 from xml.etree.ElementTree import Element, SubElement
 
-from herringbone.core import Component, Declaration, Experiment, Text, Variable
-from herringbone.core.caching.keys import sources_key
-from herringbone.core.declaring.units import base_exponents
+from herringbone.core import Component, Declaration, Text, Variable
 from herringbone.core.declaring.variable import Causality
 from herringbone.fmi import interface
+from herringbone.fmi.description.common import (
+    AUTHOR,
+    add_experiment,
+    add_items,
+    add_log_categories,
+    add_units,
+    child,
+    identifier,
+    initial,
+    sizes,
+    starting,
+    type_name,
+)
 from herringbone.fmi.used_states import UsedStates
 
-EXPERIMENT: Final = Experiment(stop=0.01, step=1e-5)
-"""Default experiment of components."""
-DISPLAY_UNITS: Final = {
-    "rad": ("deg", 180.0 / math.pi),
-    "rad/s": ("r/min", 30.0 / math.pi),
-    "N": ("kN", 1e-3),
-    "m/s": ("mm/s", 1e3),
-}
-"""What tools show instead of a unit, and the factor to it."""
-AUTHOR: Final = "herringbone developers"
-LOG_CATEGORIES: Final = {
-    "logStatusWarning": "Log messages with fmi2Warning status.",
-    "logStatusDiscard": "Log messages with fmi2Discard status.",
-    "logStatusError": "Log messages with fmi2Error status.",
-    "logStatusFatal": "Log messages with fmi2Fatal status.",
-    "logAll": "Log all messages.",
-}
 _CAPABILITIES: Final[dict[str, Any]] = {
     "needsExecutionTool": "false",
     "canBeInstantiatedOnlyOncePerProcess": "false",
@@ -43,16 +35,6 @@ _STEPS: Final[dict[str, Any]] = {
 }
 _NATIVE: Final[dict[str, Any]] = {"canInterpolateInputs": "true", "maxOutputDerivativeOrder": "1"}
 _DERIVATIVES: Final[dict[str, Any]] = {"providesDirectionalDerivative": "true"}
-
-
-def identifier(component: Component, built_with: str = "") -> str:
-    """The guid of FMI 2.0, instantiation token of FMI 3.0.
-
-    Args:
-        component: the component.
-        built_with: see `UsedStates`.
-    """
-    return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{component.name} {sources_key()}{built_with}"))
 
 
 def model_description(component: Component, native: UsedStates | None = None) -> Element:
@@ -104,19 +86,6 @@ def model_description(component: Component, native: UsedStates | None = None) ->
     return root
 
 
-def add_units(root: Element, declaration: Declaration, *further: str) -> None:
-    """Add the units that the variables carry, and further ones; the same in FMI 2.0 and 3.0."""
-    definitions = SubElement(root, "UnitDefinitions")
-    for name in sorted({v.unit for v in declaration.variables}.union(further)):
-        unit = SubElement(definitions, "Unit", name=name)
-        exponents = base_exponents(name)
-        if all(n == int(n) for n in exponents.values()):  # FMI knows no others
-            SubElement(unit, "BaseUnit", {base: str(n) for base, n in exponents.items()})
-        if name in DISPLAY_UNITS:
-            shown, factor = DISPLAY_UNITS[name]
-            SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
-
-
 def _add_types(root: Element, declaration: Declaration) -> None:
     """Add the types of variables that are one of some items; FMI forbids an empty list of types."""
     if choices := interface.choices(declaration):
@@ -126,44 +95,6 @@ def _add_types(root: Element, declaration: Declaration) -> None:
                 SubElement(types, "SimpleType", name=type_name(variable)), "Enumeration"
             )
             add_items(enumeration, variable)
-
-
-def type_name(variable: Variable) -> str:
-    """Name of the type of a variable that is one of some items, other than any variable's."""
-    return f"{variable.name}_type"
-
-
-def add_items(enumeration: Element, variable: Variable) -> None:
-    """Add the items of an enumeration; the same in FMI 2.0 and 3.0."""
-    for number, item in enumerate(variable.items):
-        SubElement(enumeration, "Item", name=item, value=str(number))
-
-
-def add_log_categories(root: Element) -> None:
-    """Add the log categories; the same in FMI 2.0 and 3.0."""
-    categories = SubElement(root, "LogCategories")
-    for name, description in LOG_CATEGORIES.items():
-        SubElement(categories, "Category", name=name, description=description)
-
-
-def add_experiment(root: Element, component: Component) -> None:
-    """Add the default experiment; the same in FMI 2.0 and 3.0."""
-    by_tolerance = component.by_tolerance
-    experiment = by_tolerance.experiment if by_tolerance else EXPERIMENT
-    given = {"startTime": "0", "stopTime": repr(experiment.stop)}
-    if experiment.tolerance is not None:
-        given["tolerance"] = repr(experiment.tolerance)
-    SubElement(root, "DefaultExperiment", {**given, "stepSize": repr(experiment.step)})
-
-
-def sizes(variable: Variable) -> dict[str, Any]:
-    """The attributes of a finite range, of a nominal value, and of what tools show."""
-    range_ = {"min": variable.minimum, "max": variable.maximum}
-    found = {name: repr(float(limit)) for name, limit in range_.items() if math.isfinite(limit)}
-    known = variable.state or variable.nominal != 1.0
-    if variable.unit in DISPLAY_UNITS:
-        found["displayUnit"] = DISPLAY_UNITS[variable.unit][0]
-    return found | ({"nominal": repr(float(variable.nominal))} if known else {})
 
 
 def _scalar(
@@ -177,20 +108,6 @@ def _scalar(
         causality=causality.value,
         variability=variability,
     )
-
-
-def initial(variable: Variable, *, settled: bool) -> str:
-    """FMI's `initial` of what is no input.
-
-    Args:
-        variable: the variable.
-        settled: states are calculated in initialisation; what is set is where that begins.
-    """
-    if variable.causality is Causality.PARAMETER:
-        return "exact"
-    if variable.state:
-        return "approx" if settled else "exact"
-    return "calculated"
 
 
 def _real(reference: int, variable: Variable, *, settled: bool = False) -> Element:
@@ -221,16 +138,6 @@ def _string(reference: int, text: Text) -> Element:
     scalar.set("initial", "exact")
     SubElement(scalar, "String", start=text.start)
     return scalar
-
-
-def starting(component: Component) -> tuple[Variable, ...]:
-    """Variables on which everything depends in initialisation, Strings aside.
-
-    Those whose start value is exact; where states are calculated, inputs as well.
-    """
-    d = component.declaration
-    found = (*d.states, *d.parameters) if component.hosting is None else (*d.parameters, *d.inputs)
-    return tuple(v for v in found if v.name not in d.hidden)
 
 
 def _add_structure(root: Element, component: Component, reals: list[Variable]) -> None:
@@ -279,11 +186,6 @@ def _add_derivatives(
         if variables[position[reference] - 1].get("initial") in {"calculated", "approx"}:
             SubElement(unknowns, "Unknown", index=str(position[reference]))
     unknowns[:] = sorted(unknowns, key=lambda unknown: int(unknown.get("index", "")))
-
-
-def child(parent: Element, tag: str) -> Element:
-    """A child element that is there."""
-    return next(parent.iterfind(tag))
 
 
 def _join(indices: list[int]) -> str:

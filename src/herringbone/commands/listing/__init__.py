@@ -1,0 +1,1 @@
+"""What there is: components, systems, scenes, algorithms, studies."""

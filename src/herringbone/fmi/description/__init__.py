@@ -1,0 +1,1 @@
+"""modelDescription.xml of a component, made from its declaration alone."""
