@@ -5,22 +5,17 @@ changes over their phase, and its slope must be what the torques leave. Newton's
 not get there: within a clearance nothing holds a shaft, and once the teeth have parted, an
 accelerating pinion looks nearly as good as an equilibrium.
 
-Here the angle and the speed stay, and all else follows its rates f(x) by implicit Euler steps,
-
-    (I / h - df/dx) step = f(x),
-
-which go to stable rest as the motion would, the larger h the faster (pseudo-transient continuation,
-C. T. Kelley and D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508-523). What is left is the
-acceleration of the speed over the angle. Where it changes its sign, the search begins again. Where
-it is larger at all angles than the angle changes it, no angle balances these torques.
+Here the angle and the speed stay, and all else comes to rest (`analysis.at_rest`). What is left is
+the acceleration of the speed over the angle. Where it changes its sign, the search begins again.
+Where it is larger at all angles than the angle changes it, no angle balances these torques.
 """
 
 from collections.abc import Iterator
 
 import numpy as np
 
+from herringbone.analysis.at_rest import Rest
 from herringbone.analysis.rigid_rotation import names_of_states, rigid_rotation, steady_rows
-from herringbone.analysis.slopes import slopes
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 
@@ -28,16 +23,6 @@ _TURN, _TURNS = 0.02, 32
 """Between angles that are tried [rad], and how many: over two meshes of 20 teeth."""
 _NEAR = 1e-6
 """How near to a balance the angle is brought [rad]."""
-_STEPS = 400
-_FIRST, _LONGEST = 1e-5, 1e4
-"""Of Euler's steps [s]."""
-_AT_REST = 1e-6
-_STRAIGHT, _BENT = 0.05, 0.3
-"""What a step leaves of what it was to do: below, the next is longer; above, it is not taken."""
-_KEPT = 0.01
-"""As above: below, the slopes serve the next step, too."""
-_SMALL = 1.0
-"""Over the size of a state: what is left is no matter then."""
 
 
 class NoBalanceError(EquilibriumError):
@@ -64,7 +49,8 @@ def balanced_angles(twin: Twin, x: np.ndarray, scale: np.ndarray) -> Iterator[np
     if len(turning) != 1 or len(rotating) != 1:
         return
     angle, speed = int(rotating[0]), int(turning[0])
-    rest = _Rest(twin, np.setdiff1d(np.arange(x.size), [angle, speed]), scale)
+    moving = np.setdiff1d(np.arange(x.size), [angle, speed])
+    rest = Rest(lambda x: twin.rhs(0.0, x), moving, scale)
     found = rest.reached(x)
     if found is None:
         return
@@ -104,52 +90,3 @@ def _turned(x: np.ndarray, angle: int, at: float) -> np.ndarray:
     turned = x.copy()
     turned[angle] = at
     return turned
-
-
-class _Rest:
-    """Where some states come to rest, while the others stay.
-
-    Args:
-        twin: the system.
-        moving: these states.
-        scale: sizes of all states (n,).
-    """
-
-    def __init__(self, twin: Twin, moving: np.ndarray, scale: np.ndarray) -> None:
-        self._twin, self._moving, self._scale = twin, moving, scale
-
-    def rate(self, x: np.ndarray) -> np.ndarray:
-        """Derivatives (n,) of the states."""
-        return self._twin.rhs(0.0, x)
-
-    def reached(self, x: np.ndarray) -> np.ndarray | None:
-        """The states (n,) at rest; None if they do not get there."""
-        x, h, rate = x.copy(), _FIRST, self.rate(x)
-        moving, size_of = self._moving, self._scale[self._moving]
-        taken_at = slope = None
-        for _ in range(_STEPS):
-            if slope is None:
-                taken_at = x
-                slope = slopes(self.rate, x, rate, self._scale, moving)[moving]
-            euler = np.diag(size_of / h) - slope
-            step = np.linalg.solve(euler, rate[moving])
-            new = x.copy()
-            new[moving] += step * size_of
-            after = self.rate(new)
-            change = (after - rate)[moving] - slope @ step
-            left = np.abs(np.linalg.solve(euler, change)).max()
-            size = np.abs(step).max()
-            if not left <= max(_BENT * size, _SMALL):
-                if taken_at is x:
-                    h *= 0.25
-                else:
-                    slope = None
-                continue
-            x, rate = new, after
-            if h >= _LONGEST and size < _AT_REST:
-                return x
-            if left > _KEPT * size + _AT_REST:
-                slope = None
-            faster = 4.0 if left < _STRAIGHT * size + _AT_REST else 1.5
-            h = _LONGEST if size < _AT_REST else min(h * faster, _LONGEST)
-        return None

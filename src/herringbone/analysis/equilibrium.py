@@ -26,6 +26,7 @@ from herringbone.analysis.rigid_rotation import (
     units_of_states,
 )
 from herringbone.analysis.slopes import slopes
+from herringbone.analysis.swung_out import swung_out
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.declaring.roles import Quantity, Role
@@ -93,7 +94,12 @@ def answered_equilibrium(twin: Twin, answers: Answers) -> AnsweredEquilibrium:
         guess, held = _guess(twin), _held(twin.system, twin)
         answered = Answered(twin, answers, guess, speeds_up=held is None)
         stay = [state for state in (held, *answered.kept) if state is not None]
-        found, _ = _solved(twin.system, twin, stay, guess, answered)
+        try:
+            found, _ = _solved(twin.system, twin, stay, guess, answered)
+        except EquilibriumError:
+            if (near := swung_out(twin, answered, guess, _scales(twin))) is None:
+                raise
+            found, _ = _solved(twin.system, twin, stay, near, answered)
         acceleration, x = answered.set(found), found[:-1]
         return AnsweredEquilibrium(_start_values(twin, x), x, acceleration, answered.rotation)
 

@@ -40,7 +40,8 @@ def split_housings(
         else:
             raise ResourceError(
                 f"{option}: it takes a folder with {HEAD}, the dimensions of a welded housing "
-                f"({_DIMENSIONS}) or an FMU ({_FMU}); unpack a zip file first"
+                f"({_DIMENSIONS}) or an FMU ({_FMU}); 'herringbone housing import' makes the "
+                "folder of another program's modes or matrices; unpack a zip file first"
             )
     return data, fmus
 

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 
+from herringbone.analysis.anatomy import value_at
 from herringbone.analysis.equilibrium import SCALE
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import EquilibriumError
@@ -94,6 +95,12 @@ def _settled(system: System, step: float) -> tuple[System, tuple[str, ...]]:
         lines.append(
             f"torques do not balance: the steady rotation speeds up by {found.acceleration:.4g} "
             "rad/s^2 of the fastest shaft"
+        )
+    if found.moved:
+        lines.append(
+            f"{found.moved} starts at {found.values[found.moved]:.6g} rad/s, where torques balance "
+            f"(given: {value_at(system, found.moved):.6g} rad/s); --start {Start.REST} takes what "
+            "is given"
         )
     parts = tuple(replace(part, approach=found.approaches.get(part.name)) for part in system.parts)
     return replace(system, parts=parts).with_values(found.values), tuple(lines)

@@ -159,6 +159,7 @@ PARTS = {
     "c_e_drive.c": {
         "inputs": ["torque_set", "flange.phi", "flange.w"],
         "outputs": ["flange.tau", "rotor_w"],
+        "parameters": {"slip": 0.0},
         "units": {
             "torque_set": "N.m",
             "flange.phi": "rad",

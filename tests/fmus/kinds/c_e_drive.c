@@ -1,9 +1,11 @@
-/* Electric drive: torque with the lag of the current, rotor, elastic shaft to the flange. The angle
-   of the flange moves on with its speed during a step. Semi-implicit Euler in sub-steps of 5 us. */
+/* Electric drive: torque with the lag of the current, less by slip [N m s/rad] times the rotor's speed;
+   rotor, elastic shaft to the flange. The angle of the flange moves on with its speed during a step.
+   Semi-implicit Euler in sub-steps of 5 us. */
 #include <stddef.h>
 
 enum { OK = 0, ERROR = 3 };
-enum { SET, PHI, W, TAU, ROTOR_W, REALS, INPUTS = 3 };
+enum { SET, PHI, W, TAU, ROTOR_W, SLIP, REALS, INPUTS = 3 };
+#define PARAMETERS SLIP
 typedef int Status;
 typedef struct {
     double real[REALS];
@@ -26,7 +28,7 @@ static Status step(Model *m, double t, double h) {
     double d = h / n;
     for (int i = 0; i < n; ++i) {
         double phi = m->real[PHI] + (i - n) * d * m->real[W];
-        m->torque += d * (m->real[SET] - m->torque) / LAG;
+        m->torque += d * (m->real[SET] - m->real[SLIP] * m->w - m->torque) / LAG;
         m->w += d * (m->torque - shaft(m, phi)) / INERTIA;
         m->phi += d * m->w;
     }

@@ -66,6 +66,19 @@ def test_folded_lines_are_named():
     assert told[2, True] == pytest.approx(100.0, abs=0.5)
 
 
+def test_what_vibrates_there_itself_is_not_a_folded_line():
+    """100 Hz beside the second mesh harmonic, 900 Hz, which shows there at 1 kHz, too."""
+    system = RIG.with_values({"A.sampling_hz": 1000.0, "A.bits": 0.0})
+    result = with_sensors(system=system)
+    column = "gearbox.bearing_supports.seat.pinion_left.f_z"
+    size = np.abs(seat_forces(result)).max()
+    t = result.data["time"].to_numpy()
+    result.data[column] += 10.0 * size * np.sin(2 * np.pi * 100.0 * t)
+    line = sensor_figures(result, ("A",))[0]["A"].lines[0]
+    assert line.frequency_hz == pytest.approx(100.0, abs=0.5)
+    assert (line.mesh_order, line.folded) == (None, False)
+
+
 def test_answers_are_kept_while_nothing_changes():
     result = with_sensors(0.2)
     first = sensor_figures(result)[0]["A"]

@@ -227,6 +227,8 @@ def test_warnings():
     assert housing_warnings(housing) == []
     few = housing_warnings(replace(housing, valid_to_hz=3000.0))
     assert few[0].endswith("valid_to_hz = 3000 Hz asks for modes to 4500 Hz")
+    whole = replace(housing, valid_to_hz=3000.0, certificate={"next_frequency_hz": None})
+    assert len(housing_warnings(whole)) == len(few) - 1
     (scale,) = housing_warnings(replace(housing, shapes=1e-3 * housing.shapes))
     assert "differs from static.csv by -100 %" in scale
     (residual,) = housing_warnings(small_housing())

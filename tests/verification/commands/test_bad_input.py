@@ -206,6 +206,7 @@ def test_system_file(refused, tmp_path, text, said):
         ("--replace=nope=x.fmu", "has no part 'nope'"),
         ("--replace=modal_housing=no.fmu", "modal_housing: there is no file no.fmu"),
         ("--replace=modal_housing=.", "modal_housing: . is a folder; give an .fmu file"),
+        (f"--housing={__file__}", "'herringbone housing import' makes the"),
     ],
 )
 def test_options(refused, option, said):
@@ -413,6 +414,7 @@ def test_foreign_housing_with_a_missing_seat(refused, stranger):
     file = stranger("ThreeSeats", (seats, '("pinion_left", "pinion_right", "wheel_left")'))
     line = refused(f"--replace=modal_housing={file}")
     assert "gearbox.modal_housing has no variable or port 'wheel_right'; it has the ports" in line
+    assert "or leave the connection out of your system.toml" in line
 
 
 FAILURES = {

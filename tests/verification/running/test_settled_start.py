@@ -109,6 +109,20 @@ def test_what_does_not_balance_speeds_up(driven):
     assert speed[0] == pytest.approx(SPEED, rel=1e-9)
 
 
+def test_torque_that_goes_with_speed_starts_where_it_balances(driven):
+    """A motor with slip speeds up to 0.5 rad/s more than what was set, and starts there."""
+    slip, balance = 100.0, SPEED + 0.5
+    values = {"motor.torque_set": 200.0 + slip * balance, "motor.slip": slip}
+    run = hb.run(driven, values={**values, "gear_mesh.der(angle)": SPEED}, t_end=0.005,
+                 record_step=STEP)  # fmt: skip
+    assert any("where torques balance (given: 80 rad/s)" in note for note in run.info.notes)
+    # As above: what the slope of the mesh stiffness gives back; answers are steady within 5e-4.
+    off = 0.2 + 5e-4 * 200.0
+    assert run.data["gearbox.gear_mesh.pinion.w"][0] == pytest.approx(balance, abs=off / slip)
+    torque = run.data["motor.flange.tau"].to_numpy()
+    assert np.abs(torque - 200.0).max() < 0.01 * 200.0
+
+
 def test_limit_that_runs_show_from_a_turning_start(driven):
     """Runs begin where the foreign motor was stepped to, 18 rad from where matrices are taken.
 

@@ -82,7 +82,8 @@ def _end(path: str, system: System, parts: Mapping[str, Part]) -> _End:
     if not suffixes:
         raise StructureError(
             f"connection '{path}': {name} has no variable or port '{inner}'; it has the ports "
-            + ", ".join(_ports(part))
+            + (", ".join(_ports(part)) or "none")
+            + "; join one of these, or leave the connection out of your system.toml"
         )
     return _End(part, inner, suffixes)
 

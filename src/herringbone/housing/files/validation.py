@@ -150,8 +150,9 @@ def housing_warnings(housing: ModalHousing) -> list[str]:
     found = [*implausible(housing)]
     normal = housing.frequency_hz[[kind == "normal" for kind in housing.kind]]
     highest, needed = float(normal.max(initial=0.0)), BAND_OF_MODES * housing.valid_to_hz
-    following = float(housing.certificate.get("next_frequency_hz") or 0.0)
-    if max(highest, following) < needed:
+    following = housing.certificate.get("next_frequency_hz", 0.0)
+    all_kept = following is None
+    if not all_kept and max(highest, float(following)) < needed:
         found.append(
             f"normal modes end at {highest:.0f} Hz; valid_to_hz = {housing.valid_to_hz:g} Hz asks "
             f"for modes to {needed:.0f} Hz"

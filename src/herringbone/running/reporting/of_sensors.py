@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 from typing import Any
 
-from herringbone.analysis.figures.sensing.sensors import SensorFigures, SensorLine, sensor_figures
+from herringbone.analysis.figures.sensing.lines import SensorLine
+from herringbone.analysis.figures.sensing.sensors import SensorFigures, sensor_figures
 from herringbone.result.result import Result
 
 _MM = 1e3

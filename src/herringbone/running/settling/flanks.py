@@ -10,7 +10,8 @@ from herringbone.cosim.structure.approach import Approach, SteadyInput
 from herringbone.cosim.structure.system import System
 from herringbone.running.content import contents_of_system
 from herringbone.running.pairs.carrying_flank import COAST, coasts, free_flanks
-from herringbone.running.settling.settled_start import SettledStart, settled_start
+from herringbone.running.settling.search import SettledStart
+from herringbone.running.settling.settled_start import settled_start
 from herringbone.running.settling.stranger import NoSettledStartError
 
 _SOURCES = ("herringbone.running.settling.settled_start",)
@@ -63,7 +64,7 @@ def _known_start(system: System, known: System, step: float) -> SettledStart:
     file = cache_root() / "settled-starts" / f"{key}.json"
     if (plain := kept(file)) is not None:
         approaches = {name: _approach(way) for name, way in plain["approaches"].items()}
-        return SettledStart(plain["values"], approaches, plain["acceleration"])
+        return SettledStart(plain["values"], approaches, plain["acceleration"], plain["moved"])
     found = settled_start(system, known, step)
     ways = {str(name): asdict(way) for name, way in found.approaches.items()}
     keep(file, {**found._asdict(), "values": dict(found.values), "approaches": ways})

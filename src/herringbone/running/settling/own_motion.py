@@ -45,14 +45,15 @@ class OwnMotion:
         acceleration: of the fastest shaft [rad/s^2].
         outputs: what others take, by path.
         angles: angles that turn, by path of the state.
-        speeds_up: the drivetrain can turn as a whole, and nothing holds its speed.
+        fastest: path of the speed of the fastest shaft; "" where the drivetrain cannot turn as a
+            whole, or something holds its speed.
     """
 
     values: Values
     acceleration: float
     outputs: Mapping[str, Output]
     angles: Mapping[str, Output]
-    speeds_up: bool
+    fastest: str
 
     def at_acceleration(self, acceleration: float) -> "OwnMotion":
         """The same at another acceleration [rad/s^2]; own parts do not balance then."""
@@ -112,7 +113,9 @@ def own_motion(system: System, answers: Answers, taken: Sequence[str]) -> OwnMot
     angles = {
         names[i]: Output(float(x[i]), float(dx[i]), float(change[i]), False) for i in twin.turning
     }
-    return OwnMotion(found.values, found.acceleration, outputs, angles, bool(found.rotation.any()))
+    rotation = np.abs(found.rotation)
+    fastest = names[int(np.argmax(rotation))] if rotation.any() else ""
+    return OwnMotion(found.values, found.acceleration, outputs, angles, fastest)
 
 
 def _speed(twin: Twin, path: str) -> str | None:

@@ -6,48 +6,22 @@ balanced with; as what it is given follows from these, answers are looked for th
 
 Own parts turn by the angle by which foreign ones are turned on the way, so that the slowest of
 these begins where it declares. Torques that do not balance speed the drivetrain up evenly, if no
-controller holds the speed: parts settle under this acceleration, too.
+controller holds the speed: parts settle under this acceleration, too. Where torques
+go with speed (a slip, a propeller), that is moved to where they balance.
 """
 
-from typing import NamedTuple
+from contextlib import suppress
 
-import numpy as np
-
-from herringbone.analysis.anatomy import value_at
 from herringbone.core import HerringboneError
-from herringbone.cosim.structure.approach import Approach, SteadyInput
 from herringbone.cosim.structure.network import Network
-from herringbone.cosim.structure.system import System, Values
-from herringbone.running.settling.anderson import Anderson
+from herringbone.cosim.structure.system import System
 from herringbone.running.settling.laid_out import laid_out
-from herringbone.running.settling.links import Links
-from herringbone.running.settling.own_motion import OwnMotion, own_motion
-from herringbone.running.settling.settled import LONGEST, Settled
+from herringbone.running.settling.search import PROBE, Search, SettledStart
 from herringbone.running.settling.stranger import NoSettledStartError, Stranger
 
-_FIRST = 0.02
-"""Duration that is tried first [s]."""
-_ROUNDS = 20
-_STEP = 2e-5
-"""Longest step before the run [s]; that of the run plays no part, so that the start is the same."""
-_SAME = 1e-4
-"""Of the largest answer of its unit: what is left."""
-_PROBE = 10.0
-"""Acceleration that tells inertia [rad/s^2]."""
-
-
-class SettledStart(NamedTuple):
-    """Start values of own parts, and how foreign parts come there.
-
-    Attributes:
-        values: by `instance.variable`.
-        approaches: by part; what has no memory needs none.
-        acceleration: of the fastest shaft [rad/s^2].
-    """
-
-    values: Values
-    approaches: dict[str, Approach]
-    acceleration: float
+_NEAR, _FARTHEST = 0.05, 0.5
+"""How far a speed that was set may be moved, as a share of it; the latter where there is no other
+start."""
 
 
 def settled_start(system: System, known: System, step: float) -> SettledStart:
@@ -63,122 +37,23 @@ def settled_start(system: System, known: System, step: float) -> SettledStart:
     """
     try:
         with laid_out(system, known, step) as (network, strangers):
-            return _Search(known, network, strangers).found()
+            return _found(known, network, strangers)
     except HerringboneError as error:
         raise NoSettledStartError(str(error)) from error
 
 
-class _Search:
-    """One search; see `settled_start`. The answers of all strangers stand in one row."""
+def _found(known: System, network: Network, strangers: list[Stranger]) -> SettledStart:
+    """Where torques balance, near the speed that was set; else speeding up; else far from it."""
 
-    def __init__(self, known: System, network: Network, strangers: list[Stranger]) -> None:
-        self._system, self._strangers = known, strangers
-        self._links = Links(network, strangers)
-        self._durations = {part.name: _STEP if part.at_once else _FIRST for part in strangers}
-        self._gradual, self._settle = True, set[str]()
-        self._answer = np.zeros(len(self._links.has_states))
+    def balanced(farthest: float) -> SettledStart | None:
+        with suppress(HerringboneError):
+            return Search(known, network, strangers).at_balance(farthest)
+        return None
 
-    def found(self) -> SettledStart:
-        """The start; raises HerringboneError."""
-        links = self._links
-        slopes, by_acceleration = links.slopes(), np.zeros_like(self._answer)
-        motion = self._balanced(np.where(links.has_states, 0.0, self._untouched()), slopes,
-                                by_acceleration)  # fmt: skip
-        still = motion.at_acceleration(0.0)
-        self._gradual = self._begins_gently(still)
-        answer = self._settled(still)
-        if motion.speeds_up:
-            faster = self._settled(motion.at_acceleration(_PROBE))
-            by_acceleration = np.where(links.has_states, (faster - answer) / _PROBE, 0.0)
-        constant = answer - slopes @ links.own_values(still)
-        search = Anderson(links.sizes(answer))
-        for _ in range(_ROUNDS):
-            motion = self._balanced(constant, slopes, by_acceleration)
-            answer = self._settled(motion)
-            straight = slopes @ links.own_values(motion) + by_acceleration * motion.acceleration
-            if np.all(np.abs(answer - straight - constant) <= _SAME * links.sizes(answer)):
-                return SettledStart(
-                    motion.values,
-                    {p.name: self._approach(p, motion) for p in self._strangers if not p.at_once},
-                    motion.acceleration,
-                )
-            constant = search.next(constant, answer - straight)
-        raise NoSettledStartError("what foreign parts answer and what own parts give do not meet")
-
-    def _balanced(
-        self, constant: np.ndarray, slopes: np.ndarray, by_acceleration: np.ndarray
-    ) -> OwnMotion:
-        """Own parts with what others answer; they turn on by what others turn on their way."""
-        answers = self._links.answered(constant, slopes, by_acceleration)
-        found = own_motion(self._system, answers, self._links.own_outputs)
-        if not any(map(found.turns, found.outputs)):
-            return found
-        way = self._way()
-        turned = {
-            path: value_at(self._system, path) + way.turned(*found.rates(angle))
-            for path, angle in found.angles.items()
-        }
-        return own_motion(self._system.with_values(turned), answers, self._links.own_outputs)
-
-    def _way(self) -> Approach:
-        """Of own parts, which turn as long as the slowest foreign one."""
-        return Approach((), max(self._durations.values()), _STEP, gradual=self._gradual)
-
-    def _untouched(self) -> np.ndarray:
-        """Answers to the inputs at which strangers begin."""
-        found = {}
-        for part in self._strangers:
-            begin = [
-                SteadyInput(n, float(x), begin=float(x))
-                for n, x in zip(part.inputs, part.begin, strict=True)
-            ]
-            given = part.approach(begin, _STEP, _STEP, gradual=False)
-            found[part.name] = part.settled(given).outputs
-            found[part.name] -= part.feedthrough() @ part.begin
-        return self._links.row(found)
-
-    def _approach(self, part: Stranger, motion: OwnMotion) -> Approach:
-        given = self._links.given(part, motion, self._answer)
-        return part.approach(given, self._durations[part.name], _STEP, gradual=self._gradual)
-
-    def _settled(self, motion: OwnMotion) -> np.ndarray:
-        """What strangers come to, each in its own time, longer and longer until it does."""
-        found = {}
-        for part in self._strangers:
-            before, now = None, part.settled(self._approach(part, motion))
-            while not part.is_settled(now, before, known=part.name in self._settle):
-                part.refuse_hopeless(now, before, self._durations[part.name])
-                motion = self._lengthen(part, now, motion)
-                before, now = now, part.settled(self._approach(part, motion))
-            self._settle.add(part.name)
-            found[part.name] = now.outputs
-        self._answer = self._links.row(found)
-        return self._answer
-
-    def _lengthen(self, part: Stranger, found: Settled, motion: OwnMotion) -> OwnMotion:
-        """Twice the time, and the motion that goes with it.
-
-        Raises:
-            NoSettledStartError: that is too long.
-        """
-        before = self._way()
-        if part.at_once:
-            raise NoSettledStartError(f"{part.name}: {found.worst} has no steady value")
-        self._durations[part.name] *= 2.0
-        if self._durations[part.name] > LONGEST:
-            raise NoSettledStartError(
-                f"{part.name}.{found.worst} still changes by {100.0 * found.change:.2g} % after "
-                f"{0.5 * self._durations[part.name]:.3g} s"
-            )
-        now = self._way()
-        return motion.turned_on(lambda *rates: now.turned(*rates) - before.turned(*rates))
-
-    def _begins_gently(self, motion: OwnMotion) -> bool:
-        """If foreign parts answer less to shafts that speed up than to shafts that turn at once."""
-        peaks = []
-        for gradual in (True, False):
-            self._gradual = gradual
-            found = {p.name: p.settled(self._approach(p, motion)).peak for p in self._strangers}
-            peaks.append(self._links.row(found))
-        sizes = self._links.sizes(np.maximum(*peaks))
-        return bool(np.max(peaks[0] / sizes) <= np.max(peaks[1] / sizes))
+    try:
+        found = Search(known, network, strangers).found()
+    except NoSettledStartError:
+        if start := balanced(_FARTHEST):
+            return start
+        raise
+    return found if abs(found.acceleration) < PROBE else balanced(_NEAR) or found

@@ -16,7 +16,7 @@ from herringbone.analysis.asked import signal
 from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.remembered_figures import figure_of
-from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, spectral_lines
+from herringbone.analysis.figures.sensing.lines import Felt, SensorLine, sensor_lines
 from herringbone.analysis.figures.velocity_sensor import VelocitySensor
 from herringbone.components.registry import component_for
 from herringbone.core import ParameterError
@@ -29,24 +29,6 @@ from herringbone.result.result import TIME, Result
 _CHAIN = tuple(f.name for f in fields(VelocitySensor))
 _FIRST = "first_sample"
 _FEWEST_ROWS = 4
-_MOST_ORDERS = 50
-
-
-@dataclass(frozen=True)
-class SensorLine:
-    """A line in a sampled record.
-
-    Attributes:
-        frequency_hz: at which it shows.
-        amplitude: [m/s].
-        mesh_order: harmonic of the mesh frequency that shows there; None if none does.
-        folded: that harmonic lies above half the sampling rate.
-    """
-
-    frequency_hz: float
-    amplitude: float
-    mesh_order: int | None
-    folded: bool
 
 
 @dataclass(frozen=True)
@@ -193,7 +175,11 @@ def _figures(
     part = steady_part(result)
     at = even[0] + record.time
     steady = (at >= part.begin) & (at <= part.end)
-    lines = _lines(result, chain, record.velocity[steady]) if part.steady else ()
+    lines: tuple[SensorLine, ...] = ()
+    if part.steady:
+        rows = (time >= part.begin) & (time <= part.end)
+        felt, mesh = Felt(time[rows], velocity[rows]), run_mesh_frequency(result)
+        lines = sensor_lines(chain, record.velocity[steady], felt, mesh)
     return SensorFigures(spec, chain, at, record.velocity, steady, int(record.saturated), lines)
 
 
@@ -235,30 +221,3 @@ def _even_times(time: np.ndarray, chain: VelocitySensor, first: float) -> tuple[
     begin = first + period * max(0, math.ceil((time[0] - first) / period - 1e-9))
     count = int((time[-1] - begin) / step * (1.0 + 1e-12)) + 1
     return np.minimum(begin + step * np.arange(max(count, 0)), time[-1]), step
-
-
-def _lines(
-    result: Result, chain: VelocitySensor, samples: np.ndarray, count: int = 3
-) -> tuple[SensorLine, ...]:
-    """The largest lines of samples, with the mesh harmonics that show there."""
-    if len(samples) < FEWEST_SAMPLES:
-        return ()
-    half = 0.5 * chain.sampling_hz
-    found = spectral_lines(samples, 1.0 / chain.sampling_hz, half, count)
-    return tuple(
-        SensorLine(line.frequency, line.amplitude, *_order(result, chain, line.frequency, samples))
-        for line in found
-    )
-
-
-def _order(
-    result: Result, chain: VelocitySensor, frequency: float, samples: np.ndarray
-) -> tuple[int | None, bool]:
-    """Lowest mesh harmonic that shows at a frequency, within a resolution; is it folded."""
-    mesh, resolution = run_mesh_frequency(result), chain.sampling_hz / len(samples)
-    if mesh is None:
-        return None, False
-    for k in range(1, _MOST_ORDERS + 1):
-        if abs(chain.alias_hz(k * mesh) - frequency) <= resolution:
-            return k, k * mesh > 0.5 * chain.sampling_hz
-    return None, False

@@ -1,0 +1,57 @@
+"""States of a drivetrain that speeds up evenly, found as damped motion comes to rest.
+
+Newton's method may open a mesh on its way, and does not close it again: within the clearance
+nothing depends on where the teeth are. Motion does close it. Seen from the fastest shaft, which
+stays, all else comes to rest (`analysis.at_rest`).
+"""
+
+import numpy as np
+
+from herringbone.analysis.answered import Answered
+from herringbone.analysis.at_rest import Rest
+from herringbone.analysis.twin.monolithic import Twin
+
+
+def swung_out(
+    twin: Twin, answered: Answered, x: np.ndarray, scale: np.ndarray
+) -> np.ndarray | None:
+    """States (n,) near an even rotation; None if nothing may speed up, or they do not get there.
+
+    Args:
+        twin: of the components.
+        answered: the same, with what others answer.
+        x: states (n,) to begin from; all shafts begin at the speed of the fastest one.
+        scale: sizes of the states (n,).
+    """
+    if not answered.kept:
+        return None
+    rotation, fastest = answered.rotation, answered.kept[0]
+    if (angle := _angle_of(twin, x, fastest)) is None:
+        return None
+    begin = np.where(rotation != 0.0, rotation * x[fastest], x)
+    turned = twin.rhs(0.0, begin + rotation) - twin.rhs(0.0, begin)
+    turning_on = np.zeros_like(x)
+    turning_on[twin.turning] = turned[twin.turning] * x[fastest]
+
+    def rate(x: np.ndarray) -> np.ndarray:
+        even, faster = (_rate(twin, answered, x, a) for a in (0.0, 1.0))
+        by_acceleration = faster - even
+        a = even[fastest] / (1.0 - by_acceleration[fastest])
+        return even + a * (by_acceleration - rotation) - turning_on
+
+    moving = np.setdiff1d(np.arange(x.size), [angle, fastest])
+    return Rest(rate, moving, scale).reached(begin)
+
+
+def _angle_of(twin: Twin, x: np.ndarray, speed: int) -> int | None:
+    """The state that turns by a speed, by their places; None if none does."""
+    faster = x.copy()
+    faster[speed] += 1.0
+    change = np.abs(twin.rhs(0.0, faster) - twin.rhs(0.0, x))
+    return next((i for i in twin.turning if change[i] > 0.0), None)
+
+
+def _rate(twin: Twin, answered: Answered, x: np.ndarray, acceleration: float) -> np.ndarray:
+    """Rates (n,) under what is answered at an acceleration of the fastest shaft [rad/s^2]."""
+    answered.set(np.append(x, acceleration))
+    return twin.rhs(0.0, x)
