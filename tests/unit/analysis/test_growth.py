@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from herringbone.analysis.stability.growth import growth_of
+from herringbone.analysis.stability.growth import Growth, growth_of, pair_growth
 
 SIZE, STEP = 180, 1e-3
 KNOWN = 1e-8
@@ -68,3 +68,25 @@ def test_free_rotation_that_errors_have_split():
     assert _split(2e-4, 2e-4) == pytest.approx(0.999, rel=KNOWN)
     assert _split(2e-4, 1e-4) == pytest.approx(1.0 + 2e-4, rel=KNOWN)
     assert _split(1e-3, 1e-3) == pytest.approx(1.0 + 1e-3, rel=KNOWN)
+
+
+def _turning(mean, apart):
+    """Free rotation whose eigenvalues are `mean` +- the root of `apart` from 1, and a decay."""
+    matrix = np.zeros((2 + SIZE, 2 + SIZE))
+    matrix[:2, :2] = [[1.0 + mean, 1.0], [apart, 1.0 + mean]]
+    matrix[2:, 2:] = matrix_of((0.999 * np.exp(2.0j),))
+    return matrix
+
+
+@pytest.mark.parametrize("apart", [4e-8, -4e-8, 1e-9, -1e-10])
+def test_the_mean_of_free_rotation_is_left_by_errors(apart):
+    """However far errors split the two, and whether they turn or not."""
+    growth = 2e-6
+    matrix = _turning(growth, apart)
+    assert pair_growth(matrix, growth_of(matrix, STEP), STEP) == pytest.approx(growth, abs=KNOWN)
+
+
+def test_what_is_no_free_rotation_has_no_mean():
+    """Too far apart for errors, or another motion."""
+    assert pair_growth(_turning(2e-6, 1e-6), None, STEP) is None
+    assert pair_growth(_turning(2e-6, 4e-8), Growth(1.2, 300.0, 1.2), STEP) is None

@@ -22,7 +22,7 @@ import numpy as np
 from herringbone.analysis.stability.coordinates import Coordinates
 from herringbone.analysis.stability.followers import Followers
 from herringbone.analysis.stability.given_derivatives import check_orders, rated_outputs
-from herringbone.analysis.stability.growth import GROWTH, RIGID, Growth, growth_of
+from herringbone.analysis.stability.growth import GROWTH, RIGID, Growth, growth_of, pair_growth
 from herringbone.analysis.stability.steps.linear_part import CHANGE, OTHER_CHANGE
 from herringbone.analysis.stability.steps.step_map import linear_part
 from herringbone.analysis.stability.surrogates.stand_in import StandIn
@@ -138,19 +138,23 @@ class Amplification:
         turned = 2.0 * np.pi * found.frequency * step
         if self._noise and 0.0 < found.radius - 1.0 - GROWTH < _TURNED > turned:
             residual = min(self.residual, 1.0)
-            if not self._of_coupling(found, step):
+            if not self._of_coupling(found, matrix, step):
                 return growth_of(matrix, step, max(self._noise, residual))
         return found
 
-    def _of_coupling(self, found: Growth, step: float) -> bool:
+    def _of_coupling(self, found: Growth, matrix: np.ndarray, step: float) -> bool:
         """False if slow growth may be free rotation, of which models of foreign parts know little.
 
         What they miss makes a motion grow in time whatever the step, growth by held values goes
         with a power of the step.
         """
-        matrix = self._shorter(self.matrix(_HALF * step))
-        half = growth_of(matrix, _HALF * step, self._noise)
-        return half.radius - 1.0 < _FALLS * (found.radius - 1.0)
+        shorter = _HALF * step
+        half = self._shorter(self.matrix(shorter))
+        whole_pair, half_pair = pair_growth(matrix, found, step), pair_growth(half, None, shorter)
+        if whole_pair is not None and half_pair is not None:
+            return whole_pair > 0.0 and half_pair < _FALLS * whole_pair
+        rest = growth_of(half, shorter, self._noise)
+        return rest.radius - 1.0 < _FALLS * (found.radius - 1.0)
 
     def _shorter(self, matrix: np.ndarray) -> np.ndarray:
         """The matrix without what follows from states, which has the eigenvalue 0."""

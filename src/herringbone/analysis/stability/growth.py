@@ -19,6 +19,7 @@ mean stays where it was, while what the coupling adds moves both, or one of them
 not measured: double eigenvalues go by the root of an error, and this is the root of 8e-7, eighty
 times the error that is stated of such matrices.
 """
+_HALFWAY = 0.5
 NEAR_MIRROR = 1.1
 """Steps longer by so much at most bring a motion of `Growth.near_mirror` to half the rate."""
 _SLOW = 0.3
@@ -91,6 +92,33 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
         eigenvalues, known = _with_errors(matrix, noise)
     moving = (np.abs(eigenvalues - 1.0) > known) & ~_free(eigenvalues, noise)
     return _fastest(eigenvalues[moving], step)
+
+
+def pair_growth(matrix: np.ndarray, found: Growth | None, step: float) -> float | None:
+    """Growth per macro step that the free rotation's two motions have in the mean.
+
+    Errors of a model split the two by an amount that differs at any two steps, and leave the mean.
+
+    Args:
+        matrix: of a step [s].
+        found: a motion of this matrix that must be one of the two; None: any.
+        step: length of the step [s].
+
+    Returns:
+        None if the two are further apart than errors bring them, or do not hold what was found.
+    """
+    with one_blas_thread():
+        off = np.linalg.eigvals(matrix) - 1.0
+    off = off[np.abs(off) > _EXACT]
+    nearest = off[np.argsort(np.abs(off))]
+    pair, others = nearest[:2], np.abs(nearest[2:])
+    if len(pair) < 2 or np.abs(pair).max() > _SPLIT:
+        return None
+    # Where rounding splits the two otherwise, what was found is neither of these to the digit.
+    reach = _HALFWAY * others.min(initial=np.inf)
+    if found is not None and abs(_eigenvalue(found, step) - 1.0) > reach:
+        return None
+    return float(pair.mean().real)
 
 
 def _free(eigenvalues: np.ndarray, noise: float) -> np.ndarray:

@@ -34,7 +34,7 @@ class Laboratory:
             not offer it.
         repeats: True if two instances give equal bits.
         why: what is wrong with either, "" if nothing.
-        seconds: that a step takes [s].
+        seconds: of the quickest of the first steps [s]; only for telling how long trials may take.
         start_outputs: (m,) before the first step.
         not_finite: outputs that are not, at the start or in the first steps.
         instances: how many were made so far.
@@ -58,7 +58,7 @@ class Laboratory:
         self.restores: bool | None = None
         self.repeats = True
         self.why = ""
-        self.seconds, self.instances = 0.0, 0
+        self.seconds, self.instances = np.inf, 0
         self.start_outputs = np.empty(0)
         self.not_finite: tuple[str, ...] = ()
 
@@ -172,7 +172,9 @@ class Laboratory:
         found = []
         for number in range(_TESTED_STEPS):
             trial.set(self.start + self._stir(number))
+            begun = perf_counter()
             trial.step(self.step)
+            self.seconds = min(self.seconds, perf_counter() - begun)
             found.append(trial.values())
         return np.array(found)
 
@@ -185,9 +187,7 @@ class Laboratory:
         saved = self._saved()
         self._trial.set(self.start)
         self.start_outputs = self._trial.values()
-        begun = perf_counter()
         first = self._steps(self._trial)
-        self.seconds = (perf_counter() - begun) / _TESTED_STEPS
         finite = np.isfinite(np.vstack([self.start_outputs, first])).all(axis=0)
         self.not_finite = tuple(n for n, ok in zip(self.outputs, finite, strict=True) if not ok)
         if saved is not None:

@@ -6,6 +6,7 @@ step than the pulse's, by the same number of steps when they are half as long, h
 one that differs after the same time has a delay of its own, which is a state.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,8 +17,6 @@ from herringbone.cosim.signature.signature import Answer
 _STEPS = 8
 _LONG = 1024
 """Steps in which an input that seems to do nothing may still come out."""
-_PATIENCE = 0.5
-"""Time [s] that looking for a late answer may take."""
 _NOTHING = 1e-9
 """Differences over the largest one that are rounding."""
 _ROUNDING = 1e3 * float(np.finfo(float).eps)
@@ -40,10 +39,11 @@ def pulses(lab: Laboratory, changes: np.ndarray) -> Pulses:
     m, n = len(lab.outputs), len(lab.inputs)
     delay = np.full((m, n), -1)
     remembers = False
+    short = [_differences(lab, _only(changes, k), lab.step, _STEPS) for k in range(n)]
+    silent = [number for number in range(n) if not short[number].any()]
+    late_ones = _late(lab, changes, silent)
     for number in range(n):
-        apart = _differences(lab, number, float(changes[number]), lab.step, _STEPS)
-        if not apart.any() and lab.seconds * _LONG < _PATIENCE:
-            apart = _differences(lab, number, float(changes[number]), lab.step, _LONG)
+        apart = late_ones.get(number, short[number])
         seen = apart != 0.0
         reached = seen.any(axis=0)
         begins = np.argmax(seen, axis=0)
@@ -52,19 +52,35 @@ def pulses(lab: Laboratory, changes: np.ndarray) -> Pulses:
         late = reached & (begins > 0)
         if late.any():
             steps = 2 * len(apart)
-            half = _differences(lab, number, float(changes[number]), 0.5 * lab.step, steps) != 0.0
+            half = _differences(lab, _only(changes, number), 0.5 * lab.step, steps) != 0.0
             of_steps = np.argmax(half, axis=0) == begins
             delay[late & ~of_steps, number] = 0
     return Pulses(Answer.YES if remembers else Answer.NO, delay)
 
 
-def _differences(lab: Laboratory, number: int, change: float, h: float, steps: int) -> np.ndarray:
-    """(steps, m) what a pulse in the first step changes; what is rounding is 0."""
-    changed = lab.start.copy()
-    changed[number] += change
+def _late(lab: Laboratory, changes: np.ndarray, silent: Sequence[int]) -> dict[int, np.ndarray]:
+    """Answers over many steps of inputs that seem to do nothing; none where all of them stay so.
+
+    They are changed all at once first: where nothing comes of that, as of inputs that nothing
+    reads, it is one long run and not one each.
+    """
+    if not silent or not _differences(lab, _only(changes, silent), lab.step, _LONG).any():
+        return {}
+    return {k: _differences(lab, _only(changes, k), lab.step, _LONG) for k in silent}
+
+
+def _only(changes: np.ndarray, number: int | Sequence[int]) -> np.ndarray:
+    """Changes (n,) of these inputs alone."""
+    found = np.zeros_like(changes)
+    found[number] = changes[number]
+    return found
+
+
+def _differences(lab: Laboratory, changes: np.ndarray, h: float, steps: int) -> np.ndarray:
+    """(steps, m) what a pulse (n,) in the first step changes; what is rounding is 0."""
     rest = [lab.start] * (steps - 1)
     base = lab.resting(h, steps)
-    pulse = lab.run([changed, *rest], h)[1:]
+    pulse = lab.run([lab.start + changes, *rest], h)[1:]
     apart = pulse - base
     floor = np.maximum(_ROUNDING * np.abs(base).max(axis=0), _NOTHING * np.abs(apart).max(axis=0))
     return np.where(np.abs(apart) > floor, apart, 0.0)

@@ -12,6 +12,7 @@ from herringbone.analysis.flange.hosted_flange import Host, HostLimit, host_limi
 from herringbone.analysis.flange.variables import NEEDS, Flange, asked, find_flanges
 from herringbone.analysis.stability.surrogates.identification import LinearModel
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED, Surrogate
+from herringbone.analysis.stability.surrogates.trials import tell_cost
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part
@@ -96,6 +97,7 @@ def hosted_flange(
             tried: list[HostedFlange] = []
             for h in (step, *_TRIED):
                 with Laboratory(make, inputs, outputs, start, h) as lab:
+                    tell_cost(lab, fmu.name)
                     surrogate = Surrogate(lab, signature, part.variables)
                     if surrogate.model is not None:
                         tried.append(_hosted(fmu, found, host, surrogate, takes_derivatives))

@@ -11,6 +11,7 @@ from herringbone.analysis.rigid_rotation import names_of_states
 from herringbone.analysis.stability.surrogates.sampled import SampledSurrogate, round_period
 from herringbone.analysis.stability.surrogates.stand_in import Stranger
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
+from herringbone.analysis.stability.surrogates.trials import tell_cost
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import FmuError, HerringboneError
 from herringbone.core.activity import activity
@@ -217,6 +218,7 @@ def _surrogate(
     lab = stack.enter_context(Laboratory(make, inputs, outputs, start, step))
     at = part.addresses  # an adapter that holds inputs has none of derivatives
     takes, gives = at.set_derivatives != 0, at.get_derivatives != 0
+    tell_cost(lab, part.name)
     found = Surrogate(lab, signature, part.variables, takes_derivatives=takes, gives_rates=gives)
     if takes and not found.orders:
         return "it declares input derivatives, and refuses them"

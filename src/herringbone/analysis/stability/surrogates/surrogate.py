@@ -6,21 +6,19 @@ that resolve the part's motions: much shorter ones tell nothing of slow motions,
 of those that have died out or have turned by more than half a circle.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from time import perf_counter
 
 import numpy as np
 
 from herringbone.analysis.stability.surrogates.identification import (
     LinearModel,
     Step,
-    blocks,
     in_continuous_time,
     missed_share,
     realised,
 )
+from herringbone.analysis.stability.surrogates.trials import MOST_LENGTHS, Trials
 from herringbone.core.declaring.variable import NODES
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import PartVariable
@@ -36,34 +34,21 @@ _GOOD, _ENOUGH = 1e-8, 3.0
 """The order is the smallest whose residual is this small, or at most so many times the least."""
 _LONG = 1e-6
 """Residual up to which the longest trials are the best: short ones tell nothing of slow motions."""
-_TRIED_STEPS, _FRESH_STEPS = 8, 24
 _FAST, _SLOW, _AIM = 2.2, 0.2, 1.0
 """Largest change of a motion in a step: base steps with more or less than this are changed."""
 _SHORTER, _LONGER = 0.25, 64.0
 _SHORTEST, _LONGEST = 1e-7, 1.0
 """Base steps [s] that are tried."""
-_LOUD = 1024.0
-"""Larger changes, of parts that answer them alike: their answers stand higher above rounding.
-Smaller ones, by the same factor, of parts that answer unlike already to changes as they are.
-"""
-_ALIKE = 1e-7
-_QUIET = 1e-9
-"""Answers below this share of an output are rounding."""
-_SEED = 12
-_SECONDS = 1.0
-"""That trials with steps of one length may take, about; longer steps are left out if these do."""
-_WORTH = 2.0
-_FEWEST_FRESH = 6
 
 
 @dataclass(frozen=True)
 class _Fit:
-    """A model, and how far its steps are from answers to other inputs."""
+    """A model, and how far its steps are from answers to other inputs; sizes of outputs (m,)."""
 
     model: LinearModel
     residual: float
     base: float
-    order: int
+    sizes: np.ndarray
 
 
 class Surrogate:
@@ -100,11 +85,10 @@ class Surrogate:
         self._given, self._rates = _rules(signature, lab.inputs)
         pairs = zip(lab.inputs, lab.start, strict=True)
         self.amplitudes = np.array([amplitude(variables[name], float(x)) for name, x in pairs])
-        self._rate = np.inf  # seconds that a simulated second takes, the least that was seen
         self._residuals, self._steps = dict[tuple[float, int], float](), dict[float, Step]()
-        self._loudness = dict[float, float]()
+        self._trials = Trials(lab, self.amplitudes)
         self.model: LinearModel | None = None
-        self.base = lab.step
+        self.base, self._fit_missed = lab.step, 0.0
         self.orders, self.rated, self._follows = 0, gives_rates, True
         if takes_derivatives:
             self.orders = self._orders_taken()
@@ -155,62 +139,44 @@ class Surrogate:
     def residual(self, h: float, orders: int = 0) -> float:
         """Largest deviation of the model over the answer, of any output, in steps of h [s].
 
-        On inputs that were not fitted, all at once, with derivatives up to an order; infinite if
-        the part refuses such steps.
+        On inputs that were not fitted, all at once, with derivatives up to an order; at least what
+        the model missed when it was chosen, as one length may be met by chance; infinite if the
+        part refuses such steps.
         """
         if self.model is None:
             return np.inf
         if (h, orders) not in self._residuals:
             try:
-                self._residuals[h, orders] = self._missed_signals(h, orders)
+                missed = max(self._missed_signals(h, orders), self._fit_missed)
             except Refused:
-                self._residuals[h, orders] = np.inf
+                missed = np.inf
+            self._residuals[h, orders] = missed
         return self._residuals[h, orders]
 
     def _orders_taken(self) -> int:
         """The highest order of input derivatives that it does not refuse."""
-        for orders in range(NODES, 0, -1):
-            try:
-                self._lab.run_signals(self._signals(self._lab.step, orders), self._lab.step,
-                                      rated=False)  # fmt: skip
-            except Refused:
-                continue
-            return orders
-        return 0
-
-    def _signals(self, h: float, orders: int, loud: float = 1.0) -> np.ndarray:
-        """(steps, width) inputs that are fitted nowhere, with derivatives up to an order."""
-        count = len(self.inputs)
-        moved = _stirring(count * (1 + orders))[: self._fresh_steps(h)]
-        for order in range(orders + 1):
-            columns = slice(order * count, (order + 1) * count)
-            moved[:, columns] *= loud * self.amplitudes * math.factorial(order) / h**order
-        moved[:, :count] += self.start
-        return moved
+        return next((n for n in range(NODES, 0, -1) if self._trials.takes(n)), 0)
 
     def _missed_signals(self, h: float, orders: int) -> float:
         """Of the model, on inputs with derivatives up to an order, and by rates if it has them."""
-        signals = self._signals(h, orders, self._loudest(h))
-        rest = self._signals(h, orders, 0.0)
-        found, unmoved = (self._lab.run_signals(x, h, rated=self.rated) for x in (signals, rest))
-        inputs = np.zeros((len(signals), self.width[0]))
-        inputs[:, : signals.shape[1]] = signals - rest
-        return missed_share(self.over(h).answers(inputs), found - unmoved)
+        moved, truth = self._trials.fresh_signals(h, orders, rated=self.rated)
+        inputs = np.zeros((len(moved), self.width[0]))
+        inputs[:, : moved.shape[1]] = moved
+        return missed_share(self.over(h).answers(inputs), truth)
 
     def _identify(self, asked: float) -> None:
         """Look for the base step that resolves the motions, and meets steps of a length [s]."""
         h, found, tried = asked, list[_Fit](), set[float]()
-        for _ in range(_TRIED_STEPS):
+        for _ in range(MOST_LENGTHS):
             if h in tried or not _SHORTEST <= h <= _LONGEST:
                 break
             tried.add(h)
             fit, next_step = self._fitted(h)
             if fit is not None and h != asked:
-                missed = self._missed(fit.model.over(asked), asked)
-                fit = replace(fit, residual=max(fit.residual, missed))
+                fit = replace(fit, residual=max(fit.residual, self._missed(fit, asked)))
             if fit is not None:
                 found.append(fit)
-            h, before = self._affordable(h, next_step), h
+            h, before = self._trials.affordable(h, next_step), h
             if h == before:
                 break
         if not found:
@@ -220,7 +186,7 @@ class Surrogate:
         least = min(fit.residual for fit in found)
         accurate = [fit for fit in found if fit.residual <= max(_LONG, least)]
         best = max(accurate, key=lambda fit: fit.base)
-        self.model, self.base = best.model, best.base
+        self.model, self.base, self._fit_missed = best.model, best.base, best.residual
         if self.orders:
             self._see_what_it_follows(asked)
 
@@ -232,51 +198,12 @@ class Surrogate:
             missed[follows] = self._missed_signals(h, 1)
         self._follows, self._steps = missed[True] <= missed[False], {}
 
-    def _affordable(self, h: float, wanted: float) -> float:
-        """A longer step as far as its trials may take, the same one if that is not far."""
-        if wanted <= h:
-            return wanted
-        count = len(self._lab.inputs)
-        steps = (1 + count) * self._trial_steps
-        longest = _SECONDS / max(steps * self._rate, 1e-300)
-        return min(wanted, longest) if longest > _WORTH * h else h
-
-    def _loudest(self, h: float) -> float:
-        """How large changes may be that are answered alike in trials with steps of h [s]."""
-        if h not in self._loudness:
-            self._loudness[h] = self._largest_alike(h)
-        return self._loudness[h]
-
-    def _largest_alike(self, h: float) -> float:
-        """The largest of three sizes that is answered as much smaller changes are, or the least."""
-        if not self._lab.inputs:
-            return 1.0
-        inputs = np.zeros((self._trial_steps, len(self.amplitudes)))
-        rest = self._run(inputs, h)
-        inputs[:_FRESH_STEPS] = _stirring(len(self.amplitudes))[: len(inputs)]
-
-        def answers(size: float) -> np.ndarray:
-            return (self._run(inputs * size, h) - rest) / size
-
-        large = answers(_LOUD)
-        for size, smaller in ((_LOUD, 1.0), (1.0, 1.0 / _LOUD)):
-            small = answers(smaller)
-            off = np.abs(small - large).max(axis=0)
-            rounding = _QUIET * np.abs(rest).max(axis=0) / smaller
-            if np.all(off <= _ALIKE * np.abs(large).max(axis=0) + rounding):
-                return size
-            large = small
-        return 1.0 / _LOUD
-
-    @property
-    def _trial_steps(self) -> int:
-        """Of the trials that a model is made of."""
-        return 1 + sum(blocks(len(self._lab.inputs), len(self._lab.outputs)))
-
     def _fitted(self, h: float) -> tuple[_Fit | None, float]:
         """The best model of trials with steps of h [s], and the step to be tried next."""
-        whole = realised(self._markov(h))
-        inputs, truth = self._fresh(h)
+        answers, sizes = self._trials.pulses(h)
+        whole = realised(answers)
+        inputs, changed = self._trials.fresh(h)
+        truth = changed / sizes
         found: list[tuple[float, int]] = []
         for order in _orders(len(whole.a)):
             missed = missed_share(whole.reduced(order).answers(inputs), truth)
@@ -287,7 +214,7 @@ class Surrogate:
         accurate = max(_GOOD, _ENOUGH * least)
         residual, order = next(pair for pair in found if pair[0] <= accurate)
         step = whole.reduced(order)
-        model = in_continuous_time(self._scaled(step), h, self._given, self._rates)
+        model = in_continuous_time(self._scaled(step, sizes), h, self._given, self._rates)
         change = _fastest(step)
         if model is None or change > _FAST:
             following = _SHORTER * h
@@ -295,58 +222,17 @@ class Surrogate:
             following = h * min(_LONGER, _AIM / max(change, _AIM / _LONGER))
         else:
             following = h
-        return (None if model is None else _Fit(model, residual, h, order)), following
+        return (None if model is None else _Fit(model, residual, h, sizes)), following
 
-    def _scaled(self, step: Step) -> Step:
-        """The step with inputs and outputs in their own units."""
-        size = self._sizes
-        return Step(
-            step.a,
-            step.b / self.amplitudes,
-            size[:, None] * step.c,
-            size[:, None] * step.d / self.amplitudes,
-        )
+    def _scaled(self, step: Step, sizes: np.ndarray) -> Step:
+        """The step with inputs and outputs (m,) in their own units."""
+        size, change = sizes[:, None], self.amplitudes
+        return Step(step.a, step.b / change, size * step.c, size * step.d / change)
 
-    def _markov(self, h: float) -> np.ndarray:
-        """(steps, m, n) answers to pulses of the amplitudes, over the outputs' sizes."""
-        count = len(self._lab.inputs)
-        loud, steps = self._loudest(h), self._trial_steps
-        rest = self._run(np.zeros((steps, count)), h)
-        found = np.empty((steps, len(self._lab.outputs), count))
-        for number in range(count):
-            inputs = np.zeros((steps, count))
-            inputs[0, number] = loud
-            found[:, :, number] = (self._run(inputs, h) - rest) / loud
-        sizes = np.abs(found).max(axis=(0, 2), initial=0.0)
-        quiet = sizes * loud <= _QUIET * np.abs(rest).max(axis=0, initial=0.0)
-        found[:, quiet] = 0.0
-        self._sizes = np.where(quiet | (sizes == 0.0), 1.0, sizes)
-        return found / self._sizes[:, None]
-
-    def _fresh(self, h: float) -> tuple[np.ndarray, np.ndarray]:
-        """Inputs (steps, n) in amplitudes that are fitted nowhere, and outputs over their sizes."""
-        inputs = _stirring(len(self._lab.inputs))[: self._fresh_steps(h)]
-        loud, rest = self._loudest(h), self._run(np.zeros_like(inputs), h)
-        return inputs, (self._run(loud * inputs, h) - rest) / loud / self._sizes
-
-    def _fresh_steps(self, h: float) -> int:
-        affordable = _SECONDS / max(2.0 * h * self._rate, 1e-300)
-        return int(np.clip(affordable, _FEWEST_FRESH, _FRESH_STEPS))
-
-    def _missed(self, step: Step, h: float) -> float:
-        inputs, truth = self._fresh(h)
-        return missed_share(step.answers(inputs * self.amplitudes) / self._sizes, truth)
-
-    def _run(self, inputs: np.ndarray, h: float) -> np.ndarray:
-        """(steps, m) outputs on changes (steps, n), in amplitudes; raises Refused."""
-        begun = perf_counter()
-        found = self._lab.run(list(self.start + inputs * self.amplitudes), h)[1:]
-        # A step's own time: a run may have begun with a new instance, or have waited for others.
-        spent = (perf_counter() - begun) / len(inputs)
-        self._rate = min(self._rate, spent / h, self._lab.seconds / self._lab.step)
-        if not np.isfinite(found).all():
-            raise Refused("its outputs are not finite")
-        return found
+    def _missed(self, fit: _Fit, h: float) -> float:
+        inputs, truth = self._trials.fresh(h)
+        step = fit.model.over(h)
+        return missed_share(step.answers(inputs * self.amplitudes) / fit.sizes, truth / fit.sizes)
 
 
 def _rules(
@@ -364,11 +250,6 @@ def _rules(
         if rate >= 0 and signature.inputs[rate] in inputs:
             given[number], rates[number] = rule, inputs.index(signature.inputs[rate])
     return tuple(given), tuple(rates)
-
-
-def _stirring(count: int) -> np.ndarray:
-    """Inputs (steps, n) that no two outputs answer alike, the same ones in every call."""
-    return np.random.default_rng(_SEED).uniform(-1.0, 1.0, (_FRESH_STEPS, count))
 
 
 def _orders(most: int) -> list[int]:
