@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from numbers import Real
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
@@ -48,7 +49,11 @@ def check_grid(t_end: float, step: float | None, record_step: float) -> None:
         ParameterError: see `make_grid`.
     """
     for name, value in (("step", step), ("t_end", t_end), ("record_step", record_step)):
-        if value is not None and not (math.isfinite(value) and value > 0.0):
+        if value is None:
+            continue
+        if not isinstance(value, Real):
+            raise ParameterError(f"{name} = {value!r}: it must be a number of seconds")
+        if not (math.isfinite(value) and value > 0.0):
             raise ParameterError(f"{name} = {value:g} s: it must be positive and finite")
     if step is None:
         return

@@ -1,5 +1,7 @@
 """The range of relative errors that can be asked for."""
 
+from numbers import Real
+
 from herringbone.core import ParameterError
 
 DEFAULT_TOLERANCE = 1e-3
@@ -21,6 +23,8 @@ def check_tolerance(
     Raises:
         ParameterError: it does not lie between 1e-8 and 1.
     """
+    if not isinstance(tolerance, Real):
+        raise ParameterError(f"tolerance = {tolerance!r}: it must be a number{otherwise}")
     if not SMALLEST_TOLERANCE <= tolerance < 1.0:
         raise ParameterError(
             f"{value.format(tolerance)} it must lie between {SMALLEST_TOLERANCE:g} and 1{otherwise}"

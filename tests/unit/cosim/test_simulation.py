@@ -42,6 +42,11 @@ def test_grid_refuses(name, bad):
         make_grid(**values)
 
 
+def test_grid_refuses_what_is_no_number():
+    with pytest.raises(ParameterError, match="t_end = 'x': it must be a number of seconds"):
+        make_grid("x", 0.1, 0.1)
+
+
 def test_grid_refuses_an_end_before_the_first_step():
     with pytest.raises(ParameterError, match=r"t_end = 0\.05 s is shorter than one step of 0\.1 s"):
         make_grid(0.05, 0.1, 0.1)

@@ -70,6 +70,11 @@ def test_one_relief_is_that_of_both_gears(tmp_path):
         ("[table]", "[mesh]\nbacklash = 180\n[table]", "write '180 um'"),
         ("[table]", "[mesh]\nbacklash = [0, 0]\n[table]", "must be one value"),
         ("[table]", "[table]\nloads = 5.0", "must be a list"),
+        (
+            "number_of_teeth = [27, 81]",
+            "number_of_teeth = 27",
+            "be two numbers: pinion, wheel",
+        ),
     ],
 )
 def test_lengths_without_their_unit_and_lists_out_of_place(message, old, new, said):

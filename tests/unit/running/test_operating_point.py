@@ -32,7 +32,7 @@ def test_what_an_operating_point_decides_on_is_not_given_besides():
     with pytest.raises(ParameterError, match=r"speed decides on bench_controller\.speed_factor"):
         operated("test_rig", None, wishes, 157.0, None)
     assert len(operated("test_rig", None, wishes, None, 350.0).values) == 2
-    with pytest.raises(ParameterError, match=r"torque = nan: it must be finite"):
+    with pytest.raises(ParameterError, match=r"torque = nan: it must be a finite number"):
         operated("gearbox", None, Wishes(), None, math.nan)
     with pytest.raises(ParameterError, match="constant"):
         operated("test_rig", "runup", Wishes(), 157.0, None)

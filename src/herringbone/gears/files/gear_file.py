@@ -147,6 +147,8 @@ def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:
     for name, value in section.items():
         if isinstance(value, list) and name not in _LISTS:
             raise ResourceError(f"{where} {name} = {value} must be one value")
+        if name == "number_of_teeth" and not isinstance(value, list):
+            raise ResourceError(f"{where} {name} = {value!r} must be two numbers: pinion, wheel")
         if name == "loads" and not isinstance(value, list) and value != AUTO:
             raise ResourceError(f"{where} {name} = {value!r} must be a list, from zero on")
     return {

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from numbers import Real
 from pathlib import Path
 
 from herringbone.analysis.set_points import QUANTITIES, SPEED, TORQUE, at_pinion, set_point
@@ -65,8 +66,8 @@ def operated(
     if not asked:
         return wishes
     for name, value in asked.items():
-        if not math.isfinite(value):
-            raise ParameterError(f"{name} = {value:g}: it must be finite")
+        if not isinstance(value, Real) or not math.isfinite(value):
+            raise ParameterError(f"{name} = {value!r}: it must be a finite number")
     structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
     known = with_known_values(structure, load_scene(folder, scene), wishes)
     given = {known.split(path): path for path in wishes.values}
