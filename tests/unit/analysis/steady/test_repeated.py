@@ -56,3 +56,31 @@ def test_what_no_longer_repeats_is_told_with_how_it_parts(monkeypatch):
     assert found.change > 1e-7
     assert found.parting == (0.1, 0.01)
     assert found.march.values.shape == (1, 2 * PLACES)
+
+
+class Left(Way):
+    """A motion that is left slowly, and not come to from the beginning."""
+
+    def anew(self) -> "Left":
+        found = Left(0.25)
+        found.off = OFF
+        return found
+
+    def settle(self, time: float) -> None:
+        self.on(PLACES, PLACES)
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.1])
+def test_a_motion_of_longer_steps_alone_is_left(monkeypatch, rate):
+    """Where it is left so slowly that neighbours hardly part; levels were those of its own."""
+    monkeypatch.setattr(module, "parting", lambda *_: Parting(rate, 0.01))
+    way = Left(1.1)
+    found = with_halved_steps(SimpleNamespace(meshes=1), None, Repeated(way, None, 1, 0.0), 1e-3)
+    assert way.periods == 9
+    assert (found.way is way) == (rate > 0.0)
+    if rate > 0.0:
+        assert found.change > 1e-3
+        assert found.parting == (rate, 0.01)
+    else:  # by n periods after the beginning the change is OFF (1 - f) f^n, here with f = 1/4
+        assert found.change == pytest.approx(OFF * 0.75 * 0.25**2, rel=2.0 * OFF)
+        assert found.parting is None

@@ -178,6 +178,7 @@ class Following:
     def __init__(
         self, structure: Structure, motion: Motion, begin: Orbit, places: int, ramp: float = 0.0
     ) -> None:
+        self._begun = structure, motion, begin, places, ramp
         self._condensed, self._values = structure.core.condensed, structure.problem.values
         self._run = marching(structure, motion, _CLOSE, lean=True, ramp=ramp)
         own = start_of(begin)
@@ -194,6 +195,18 @@ class Following:
     def halve(self) -> None:
         """Go on with steps of half the length: they still meet knots of tables as they did."""
         self._parts *= 2
+
+    def anew(self) -> "Following":
+        """One that begins as this one did, by the steps of now."""
+        found = Following(*self._begun)
+        found._parts = self._parts
+        return found
+
+    def settle(self, time: float) -> None:
+        """Go on for a time [s] from the beginning, and before it while deviations come in."""
+        structure, _, begin, _, ramp = self._begun
+        turned = ramp / abs(structure.turns_of_pinion)
+        self.on(int(np.ceil((turned + time / begin.period) * self.places)), 1)
 
     def on(self, places: int, kept: int, inside: int = 1) -> March:
         """Go on for some places, and keep the last ones.

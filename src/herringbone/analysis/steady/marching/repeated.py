@@ -67,14 +67,12 @@ def repeated(
     """
     for begin, ramp in beginnings(structure, motion, still):
         way = Following(structure, motion, begin, structure.meshes * per_mesh, ramp)
-        turned = ramp / abs(structure.turns_of_pinion)
         try:
-            way.on(int(np.ceil((turned + SETTLING / begin.period) * way.places)), 1)
+            way.settle(SETTLING)
             found = _until_repeated(way, close, _MOST)
             if found.change <= close:
                 return found
-            mesh = way.period / structure.meshes
-            apart = parting(structure, motion, found.march.end, mesh, structure.meshes)
+            apart = _parting(structure, motion, found)
             if not apart.parts:
                 found = _until_repeated(way, close, _FARTHER)
         except HerringboneError:
@@ -88,7 +86,8 @@ def with_halved_steps(
 ) -> Repeated:
     """A march that repeats, with steps of half the length, until it repeats again, or for a while.
 
-    Shorter steps have another motion, which it has to come to; in which teeth may rattle.
+    Shorter steps have another motion, which it has to come to; in which teeth may rattle. A motion
+    that was stable by longer steps alone is left but slowly: then it begins anew.
 
     Args:
         structure: the system.
@@ -110,9 +109,19 @@ def with_halved_steps(
         now = now._replace(change=both.change(now.times))
         if now.change <= close:
             return now
-    mesh = now.way.period / structure.meshes
-    apart = parting(structure, motion, now.march.end, mesh, structure.meshes)
-    return now._replace(march=both, parting=apart)
+    apart = _parting(structure, motion, now)
+    if apart.parts or apart.meets:
+        return now._replace(march=both, parting=apart)
+    way = found.way.anew()
+    way.settle(SETTLING)
+    now = _until_repeated(way, close, _MOST)
+    return now if now.change <= close else now._replace(parting=_parting(structure, motion, now))
+
+
+def _parting(structure: Structure, motion: Motion, found: Repeated) -> Parting:
+    """See `parting`, from where a march has come to."""
+    mesh = found.way.period / structure.meshes
+    return parting(structure, motion, found.march.end, mesh, structure.meshes)
 
 
 def _until_repeated(way: Following, close: float, most: int) -> Repeated:
