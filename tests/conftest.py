@@ -60,6 +60,13 @@ def answers_of_the_test(request, answers_of_the_session, monkeypatch):
     monkeypatch.setattr(answers, "FOLDER", str(answers_of_the_session / str(id(request.node))))
 
 
+@pytest.fixture
+def without_pictures(monkeypatch):
+    """Runs of the command line draw none, which takes longer than a short run."""
+    has_pictures = "herringbone.running.reporting.report.has_pictures"
+    monkeypatch.setattr(has_pictures, lambda result: False)
+
+
 @pytest.fixture(scope="session")
 def python_fmus():
     """Path of the Python FMU by component."""

@@ -2,10 +2,10 @@
 
 import fmpy
 import pytest
-from fmpy.validation import validate_fmu
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core.declaring.units import base_exponents
+from herringbone.fmi.validation import validation_problems
 
 NAMES = list(COMPONENTS)
 BODIES = {
@@ -35,7 +35,7 @@ def names(variables):
 
 
 def test_no_problem_is_found(name, python_fmus):
-    assert validate_fmu(str(python_fmus[name])) == []
+    assert validation_problems(python_fmus[name]) == []
 
 
 def test_variables_are_those_of_the_block(name, description):

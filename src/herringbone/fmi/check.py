@@ -12,6 +12,7 @@ from herringbone.cosim.fmu.opening import applied
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.fmi.host import Host, Host3, open_host
 from herringbone.fmi.reference import replay
+from herringbone.fmi.validation import validation_problems
 
 _STEPS = 10
 _STEP_SIZE = 1e-3
@@ -29,15 +30,13 @@ def check_fmu(path: str | Path) -> list[str]:
     Raises:
         FmuError: there is no such file.
     """
-    from fmpy.validation import validate_fmu  # noqa: PLC0415 (lazy)
-
     path = Path(path)
     require_file(path)
     try:
         read_fmu(path)
     except FmuError as error:
         return [str(error)]
-    problems = list(validate_fmu(str(path)))
+    problems = validation_problems(path)
     try:
         return problems + applied(path, trials)
     except FmuError as error:

@@ -50,6 +50,7 @@ def columns():
 JACOBI = ("--algorithm", "jacobi:order=2")
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_default_algorithm(tmp_path, capsys):
     """Steps follow a tolerance of 1e-3; rows are 50 us apart, and the estimate is within it."""
     found = run(capsys, tmp_path, "--fmu", "in-process")
@@ -73,6 +74,7 @@ def test_default_algorithm(tmp_path, capsys):
         (("--tolerance", "1e-3"), "li:degree=3,iterations=1,tolerance=0.001"),
     ],
 )
+@pytest.mark.usefixtures("without_pictures")
 def test_what_is_said_wins_over_the_default_tolerance(tmp_path, capsys, asked, algorithm):
     found = run(capsys, tmp_path, "--fmu", "in-process", *asked)
     assert found["algorithm"].startswith(algorithm)
@@ -80,6 +82,7 @@ def test_what_is_said_wins_over_the_default_tolerance(tmp_path, capsys, asked, a
     assert (found["estimate"] is not None) == ("--tolerance" in asked)
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_li_by_name(tmp_path, capsys):
     """Equal steps; with one correction two passes and one rollback each."""
     found = run(capsys, tmp_path, "--fmu", "in-process", "--algorithm", "li:degree=3")
@@ -108,6 +111,7 @@ def test_json(tmp_path, capsys, fmu):
     assert json.loads((tmp_path / "summary.json").read_text()).items() >= found.items()
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_reference(tmp_path, capsys):
     """At 10 us, order 2, the README's 0.17 % of bearing force over 20 ms; 1 % is a bound."""
     found = run(capsys, tmp_path, "--reference", "--fmu", "in-process", *JACOBI)
@@ -117,6 +121,7 @@ def test_reference(tmp_path, capsys):
     assert len(pd.read_csv(tmp_path / "results.csv")) == 251
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_results_csv(tmp_path, capsys):
     run(capsys, tmp_path, "--parquet", "--fmu", "in-process", *JACOBI)
     lines = (tmp_path / "results.csv").read_text().splitlines()

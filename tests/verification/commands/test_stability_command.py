@@ -163,9 +163,13 @@ def question(tmp_path, capsys):
     system = Path(
         shutil.copytree(shipped, tmp_path / "mine", ignore=shutil.ignore_patterns("*.md"))
     )
-    assert main(["template", "gear", "-o", str(tmp_path / "mine.toml")]) == 0
+    gear = tmp_path / "mine.toml"
+    assert main(["template", "gear", "-o", str(gear)]) == 0
     capsys.readouterr()
-    files = ["--gear", str(tmp_path / "mine.toml"), "--scene", str(system / "scenes/loaded.toml")]
+    text = gear.read_text(encoding="utf-8")
+    assert 'method = "auto"' in text  # a table by finite elements, which is not what is asked
+    gear.write_text(text.replace('method = "auto"', 'method = "slices"'), encoding="utf-8")
+    files = ["--gear", str(gear), "--scene", str(system / "scenes/loaded.toml")]
     return ["stability", str(system), *files, "--algorithm", "jacobi:order=0", "--step", "1e-5"]
 
 

@@ -362,6 +362,7 @@ def test_python_fmus_give_the_same_bits(python_fmus):
     assert np.array_equal(columns(found, wanted.names), wanted.values)
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_a_strangers_fmu_with_state(tmp_path, capsys):
     """An adaptive step by name; with `--tolerance` alone the step is fixed, and found by runs."""
     script = tmp_path / "steppedhousing.py"

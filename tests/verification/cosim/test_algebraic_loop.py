@@ -199,6 +199,7 @@ def test_a_strangers_housing_beyond_one(tmp_path, capsys):
     assert (tmp_path / "out" / "results.csv").is_file()
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_a_strangers_housing_below_one(tmp_path, capsys):
     code, summary, _ = run_with_housing(tmp_path, capsys, 0.9, "--step=5e-6")
     assert code == 0

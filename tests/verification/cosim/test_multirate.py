@@ -81,6 +81,7 @@ def test_python_fmus_give_the_same_bits(rig, python_fmus):
     assert np.array_equal(columns(found, wanted.names), wanted.values)
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_command_line(tmp_path, capsys):
     """The step becomes that of 10 = lcm(5, 2) macro steps, twice."""
     arguments = ["run", "test_rig", "--algorithm=li", "--step=5e-5", "--t-end=1e-3", "--json"]

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
-from fmpy.validation import validate_fmu
 from support.compiler import needs_compiler
 from support.fmi2_host import Fmi2Host
 
 import herringbone as hb
 from herringbone.core import ParameterError
 from herringbone.core.declaring.hosting import Wanted
+from herringbone.fmi.validation import validation_problems
 from herringbone.running.exporting.export import export_ssp
 from herringbone.running.exporting.system_fmu import export_fmu
 
@@ -37,7 +37,7 @@ def first(fmu, mode):
 
 
 def test_it_is_declared(fmu):
-    assert validate_fmu(str(fmu)) == []
+    assert validation_problems(fmu) == []
     model = read_model_description(str(fmu))
     (mode,) = [v for v in model.modelVariables if v.name == "start_mode"]
     assert (mode.type, mode.start, mode.causality) == ("Enumeration", "2", "parameter")

@@ -6,13 +6,13 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
-from fmpy.validation import validate_fmu
 from support.compiler import needs_compiler
 from support.exchange import ExchangeHost
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance
 from herringbone.core.places.paths import component_folder
+from herringbone.fmi.validation import validation_problems
 from herringbone.running.exporting.system_fmu import export_fmu
 
 MICRO_STEP, INTERVAL, DURATION = 1e-7, 1e-5, 5e-3
@@ -53,7 +53,7 @@ def opened(exported, tmp_path):
 
 @pytest.mark.parametrize(("name", "fmi"), BUILT)
 def test_nothing_is_found_in_the_description(name, fmi, exported):
-    assert validate_fmu(str(exported(name, fmi))) == []
+    assert validation_problems(exported(name, fmi)) == []
 
 
 @pytest.mark.parametrize(("name", "fmi"), BUILT)
@@ -179,7 +179,7 @@ def test_a_housing_of_other_data_is_built_for_these(tmp_path):
     fmu = export_fmu(
         "gearbox", tmp_path / "one.fmu", outside=(MESH, "bearing_supports"), values=values
     )
-    assert validate_fmu(str(fmu)) == []
+    assert validation_problems(fmu) == []
     host = ExchangeHost(fmu, tmp_path / "one")
     host.initialise()
     modes = [f"modal_housing.q[{k}]" for k in range(1, 5)]

@@ -27,14 +27,20 @@ def housing(request, tmp_path_factory):
     return c_housing_fmu(folder, defines, saves=request.param), request.param
 
 
+@pytest.fixture(scope="module")
+def converged(housing):
+    file, _ = housing
+    return run(file, **CONVERGED)
+
+
 def true_error(result, converged):
     return apart(result, converged).groups
 
 
-def test_default_run(housing):
+def test_default_run(housing, converged):
     """At most 0.1 % with saved states; without, the estimate is within a factor of 3."""
     file, saves = housing
-    found, converged = run(file), run(file, **CONVERGED)
+    found = run(file)
     true = true_error(found, converged)
     assert max(true.values()) < (1e-3 if saves else 1e-2)
     for group, error in true.items():
@@ -43,7 +49,7 @@ def test_default_run(housing):
 
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-5])
-def test_tolerance(housing, tolerance):
+def test_tolerance(housing, converged, tolerance):
     file, _ = housing
-    true = true_error(run(file, tolerance=tolerance), run(file, **CONVERGED))
+    true = true_error(run(file, tolerance=tolerance), converged)
     assert max(true.values()) < 2.0 * tolerance

@@ -43,6 +43,7 @@ def test_foreign_parts_alone_get_a_step_that_suits_them(kinds):
     assert not result.verification.missed
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_what_is_noise_ends_the_search(kinds, tmp_path, capsys):
     """The sensor's noise does not fall with the step; the best run is kept, and says so."""
     system = write_system(

@@ -29,6 +29,7 @@ def test_against_the_twin(algorithm, step):
     assert row.value == max(run.error.values())  # what is measured goes before
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_it_is_said_and_takes_the_rule_s_place(tmp_path, capsys):
     command = ["run", "test_rig", "--t-end", "0.01", "--fmu", "in-process", "--verify"]
     assert main([*command, "--step", "2e-5", "-o", str(tmp_path)]) == 0
@@ -37,6 +38,7 @@ def test_it_is_said_and_takes_the_rule_s_place(tmp_path, capsys):
     assert "coupling (estimated; " in said
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_a_step_that_adapts_is_verified_by_the_twin(tmp_path, capsys):
     """Asked, estimated and measured stand in the summary; an explicit step of a part stays."""
     command = ["run", "test_rig", "--t-end", "0.01", "--fmu", "in-process", "--verify", "--json"]
