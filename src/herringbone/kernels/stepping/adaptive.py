@@ -28,6 +28,8 @@ SMALLEST, FIRST, LARGEST = 1e-10, 2.5e-6, 1e-4
 """Inner steps [s]: the smallest, the first, the largest."""
 LONGEST_STEP = 10.0
 """Longest communication step [s] of one call: about a million inner steps."""
+_SAME = 1e-9
+"""Relative difference of lengths that are one: rounding of times."""
 _BENT = 6.0
 """Of the longest step, and the root of the tolerance: steps in which a law bends, unseen by the
 estimate; what a step errs there grows with the square of its length."""
@@ -182,6 +184,7 @@ def adaptive_stepper(
 
     leap, ready, forget, show = core(set_inputs) if core else (stay, idle, nothing, show)
     kept, kept_count = (declaration.first_kept, declaration.kept) if later else (0, 0)
+    room = shortest * (1.0 - _SAME)
 
     @inner(declaration.name)
     def interval(
@@ -198,7 +201,7 @@ def adaptive_stepper(
             if reached < done:
                 forget(b, w)
                 most = LARGEST
-                if leaps and end - reached > shortest:  # not for want of room: a law bends
+                if leaps and end - reached >= room:  # there was room for a leap: a law bends
                     most = _BENT * math.sqrt(tolerance) * longest_step(b, w)
                 status = explicit(b, w, t, h, reached, done, tolerance, degree, most)
                 if status != 0:

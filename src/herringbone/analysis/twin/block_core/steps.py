@@ -37,8 +37,9 @@ from herringbone.kernels.stepping.adaptive import (
 
 TOLERANCE, NEXT_STEP = "tolerance", "next_inner_step"
 _USUAL = 1e-3
-LENGTHS = (1e-4, 1e-3 / 15.0, 5e-5, 4e-5, 2.5e-5, 1.25e-5)
-"""Of steps of the condensed core, by rung [s]."""
+LENGTHS = (1e-4, 1e-3 / 15.0, 5e-5, 4e-5, 2.5e-5, 1.25e-5, 1e-5)
+"""Of steps of the condensed core, by rung [s]; the last one divides the usual short communication
+steps, so that nothing is left in which a bend of a law would not be known."""
 ROUGH = 1.0
 """See `Form`; the error of a rig is a third to twice the largest power."""
 _EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_USUAL)
