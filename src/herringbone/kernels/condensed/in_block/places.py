@@ -40,7 +40,9 @@ class WorkPlaces(NamedTuple):
         bq: (2, channels, capacity), inputs of the modes.
         shapes, back: see `kernels.eigen.vectors`; when all is found, by columns over coordinates.
         room: for a node of a mode.
-        full: (q_size + channels x nodes, (nodes - 1) x arguments), while a rung is made.
+        full: (q_size, (nodes - 1) x arguments): arguments at all nodes, of the coordinates, while
+            a rung is made.
+        full_inputs: (channels x nodes, (nodes - 1) x arguments): the same of the inputs.
         seen: (2 modes + rotations + channels, states inside and outputs, in whole lines), see
             `in_block.seen`.
         bent: (outputs,) 1 where one is not affine.
@@ -95,6 +97,7 @@ class WorkPlaces(NamedTuple):
     back: int
     room: int
     full: int
+    full_inputs: int
     seen: int
     bent: int
     asked: int
@@ -218,9 +221,10 @@ def work_places(form: Form, first: int) -> WorkPlaces:
         1, 1, 1, 1, 1, n, angles, angles * n, 2 * capacity, 2 * angles * capacity,
         angles * arguments, arguments * channels, 2 * arguments * capacity,
         2 * channels * capacity, n * (n + _SPARE), n * (n + _SPARE), _SCRATCH,
-        (q_size + given) * degree * arguments, *_shown_sizes(form, q_size), n, channels, *of_state,
-        given, given, given, width, width, degree * arguments, degree * form.values,
-        degree * tangents, unknowns * unknowns, unknowns, unknowns, stiff, degree * tangents,
+        q_size * degree * arguments, given * degree * arguments, *_shown_sizes(form, q_size),
+        n, channels, *of_state, given, given, given, width, width, degree * arguments,
+        degree * form.values, degree * tangents, unknowns * unknowns, unknowns, unknowns, stiff,
+        degree * tangents,
     )  # fmt: skip
     rung, own = list(accumulate(matrices, initial=0)), list(accumulate(arrays, initial=first))
     end = max(own[-1] + len(form.lengths) * rung[-1], taken_places(form, own[-1]).end)
