@@ -24,9 +24,9 @@ from herringbone.kernels import steppers
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.condensed.in_block.condense import FOUND
 from herringbone.kernels.condensed.in_block.form import Form
-from herringbone.kernels.condensed.in_block.leaps import leaper, readier
+from herringbone.kernels.condensed.in_block.leaps import core_kernels, leaper
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, kept_size, work_places
-from herringbone.kernels.condensed.in_block.shown import HOLDS, STALE, show_kernels
+from herringbone.kernels.condensed.in_block.states import HOLDS, STALE
 from herringbone.kernels.stepping.adaptive import (
     FIRST,
     LARGEST,
@@ -165,7 +165,8 @@ def step_kernel(
             return micro
         return min(LARGEST, _STABLE / w[at.fastest])
 
-    ready = readier(found.form, at, equations)
+    core = core_kernels(found.form, at, equations)
+    ready = core.ready
     fixed = steppers.body_stepper(module.system_rhs, module.system_out, d)
     micro_at, tolerance, degree = d.indices(micro_step, TOLERANCE, INTERFACE_DEGREE)
 
@@ -176,7 +177,7 @@ def step_kernel(
             d,
             NEXT_STEP,
             longest_inner_step,
-            partial(leaper, found.form, at, equations, ready),
+            partial(leaper, found.form, at, equations, core),
             LENGTHS[-1],
             later=later,
         )
@@ -193,7 +194,7 @@ def step_kernel(
 
         return step
 
-    asked, everything = show_kernels(found.form, at, equations)
+    asked, everything = core.shown
 
     @inner(d.name)
     def answer(b, w, t, references, count):  # noqa: ANN001, ANN202 (see `Asked`)

@@ -193,7 +193,7 @@ def output_places(shown: Shown) -> np.ndarray:
 
 
 def kept_size(form: Form) -> int:
-    """How many reals a core goes on with, see `shown.STALE`, `shown.HOLDS`."""
+    """How many reals a core goes on with, see `states.STALE`, `states.HOLDS`."""
     return 2 + sum(_state_sizes(form))
 
 
