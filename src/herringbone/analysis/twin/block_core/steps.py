@@ -62,7 +62,11 @@ Wanner, Solving Ordinary Differential Equations II, 1996, section IV.2); and a s
 which steeper tangents than the mean ones may do."""
 _REMARK = """
 
-MICRO_STEP = {without_form!r}
+@kernel
+def longest_inner_step(b: np.ndarray, w: np.ndarray) -> float:
+    if w[{status}] != {found}:
+        return {without_form!r}
+    return min({longest!r}, {stable!r} / w[{fastest}])
 
 
 @kernel
@@ -111,9 +115,9 @@ def by_tolerance(module: ModuleType) -> ByTolerance:
 
 
 def remark_source(found: Stepping, micro_step: int) -> str:
-    """Source of the kernel of the remarks, and the micro step that the step is compiled with.
+    """Source of the kernels of the remarks and of the longest inner step [s].
 
-    Native code is kept by this source, so that what is compiled in stands in it.
+    Native code is kept by this source, so that the micro step that is compiled in stands in it.
 
     Args:
         found: how the system steps.
@@ -121,6 +125,9 @@ def remark_source(found: Stepping, micro_step: int) -> str:
     """
     return _REMARK.format(
         without_form=float(found.micro_step),
+        found=float(FOUND),
+        longest=LARGEST,
+        stable=_STABLE,
         micro_step=micro_step,
         status=found.at.status,
         fastest=found.at.fastest,
@@ -154,16 +161,10 @@ def step_kernel(
         found: how it steps.
         micro_step: name of the parameter that, above 0, asks for Runge-Kutta alone.
     """
-    d, at, micro = declaration, found.at, module.MICRO_STEP
+    d, at = declaration, found.at
     kept, refresh = d.first_kept, module.refresh
     sizes = (*(v.nominal for v in d.states), *(_HIDDEN,) * d.hidden_states)
     equations = equations_of(d, module, sizes, kept)
-
-    @inner(d.name)
-    def longest_inner_step(b: np.ndarray, w: np.ndarray) -> float:
-        if w[at.status] != FOUND:
-            return micro
-        return min(LARGEST, _STABLE / w[at.fastest])
 
     core = core_kernels(found.form, at, equations)
     ready = core.ready
@@ -176,7 +177,7 @@ def step_kernel(
             module.system_out,
             d,
             NEXT_STEP,
-            longest_inner_step,
+            module.longest_inner_step,
             partial(leaper, found.form, at, equations, core),
             LENGTHS[-1],
             later=later,
