@@ -10,7 +10,7 @@ import numpy as np
 from herringbone.kernels.compiling.jit import inner, outside
 from herringbone.kernels.condensed.in_block.form import Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
-from herringbone.kernels.condensed.in_block.seen import in_lines
+from herringbone.kernels.condensed.lines import in_lines
 from herringbone.kernels.signals import STRIDE
 
 

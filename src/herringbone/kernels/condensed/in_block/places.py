@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.kernels.condensed.in_block.form import Form, Shown
+from herringbone.kernels.condensed.lines import padded
 from herringbone.kernels.eigen.vectors import room
 from herringbone.kernels.signals import STRIDE
 
 _SPARE = 16
 """Modes that are not oscillations, at most twice as many, for which there is room."""
-LINE = 8
 _SCRATCH = 64
 
 
@@ -159,11 +159,6 @@ class Taken(NamedTuple):
     end: int
 
 
-def lines(count: int) -> int:
-    """A count of reals that fills whole lines of the cache."""
-    return -(-count // LINE) * LINE
-
-
 def taken_places(form: Form, first: int) -> Taken:
     """Places from `first` on."""
     n, rows = form.states, form.states + form.outputs
@@ -179,7 +174,7 @@ def _state_sizes(form: Form) -> tuple[int, ...]:
     channels, angles = form.channels, len(form.turning)
     given = channels * (form.degree + 1)
     return (
-        lines(form.states + _SPARE + angles), given, form.values, channels, 1, form.arguments,
+        padded(form.states + _SPARE + angles), given, form.values, channels, 1, form.arguments,
         (form.degree + 1) * form.kinks,
     )  # fmt: skip
 
@@ -202,9 +197,9 @@ def _shown_sizes(form: Form, q_size: int) -> tuple[int, ...]:
     if not form.outputs:
         return (0,) * 10
     rows = form.states + form.outputs
-    matrix = (q_size + form.channels) * lines(rows)
+    matrix = (q_size + form.channels) * padded(rows)
     parts = len(form.shown.states)
-    return matrix, form.outputs, rows, rows, parts, 1, 1, matrix, lines(rows), form.states
+    return matrix, form.outputs, rows, rows, parts, 1, 1, matrix, padded(rows), form.states
 
 
 def work_places(form: Form, first: int) -> WorkPlaces:
@@ -213,7 +208,7 @@ def work_places(form: Form, first: int) -> WorkPlaces:
     angles, stiff, tangents = len(form.turning), len(form.stiff), len(form.directions)
     capacity, given, unknowns = (n + _SPARE) // 2, channels * (degree + 1), stiff * degree
     of_state = _state_sizes(form)
-    q_size, width = of_state[0], lines(form.rows + angles)
+    q_size, width = of_state[0], padded(form.rows + angles)
     matrices = (
         2 * capacity, q_size * width, given * width, given * q_size, unknowns * degree * tangents,
     )  # fmt: skip

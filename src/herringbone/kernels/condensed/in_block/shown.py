@@ -14,8 +14,8 @@ from herringbone.kernels.compiling.views import matrix
 from herringbone.kernels.condensed.in_block.asked_rows import row_asker
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, output_places
-from herringbone.kernels.condensed.in_block.seen import in_lines
 from herringbone.kernels.condensed.in_block.states import ALL, COORDINATES, HOLDS, STALE, UNASKED
+from herringbone.kernels.condensed.lines import in_lines
 from herringbone.kernels.condensed.modal import add_product
 from herringbone.kernels.stepping.leaping import ANEW, AT_ONCE
 
