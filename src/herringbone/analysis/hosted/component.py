@@ -53,7 +53,7 @@ from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System
 from herringbone.kernels.compiling.jit import inner
-from herringbone.kernels.condensed.in_block.leaps import leaper, readier
+from herringbone.kernels.condensed.in_block.leaps import core_kernels, leaper
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, work_places
 from herringbone.kernels.periodic.places import periodic_scratch
 from herringbone.kernels.spectral_radius import radius_scratch
@@ -102,7 +102,7 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
     core = None
     if form and at:
         equations = equations_of(declaration, module, places.state_sizes, -1)
-        core = partial(leaper, form, at, equations, readier(form, at, equations))
+        core = partial(leaper, form, at, equations, core_kernels(form, at, equations))
     loader = loader_of(declaration, parts.instances, module)
     models = cache(lambda: models_of(composite, boundary.flanges))
     component = Component(

@@ -5,7 +5,8 @@ mean tangents times arguments, at all nodes but the first. Inputs of a step are 
 channels at all nodes, channel by channel.
 """
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -38,6 +39,23 @@ class Table(NamedTuple):
     unknown: np.ndarray
     scale: np.ndarray
     least: np.ndarray
+
+    @classmethod
+    def of(
+        cls,
+        tangent: np.ndarray,
+        value: Sequence[int],
+        mean: np.ndarray,
+        stiff: Sequence[int],
+        channels: int,
+    ) -> Self:
+        """Of mean tangents (values, arguments) and the stiff values; none has had a size so far."""
+        values = len(tangent)
+        unknown = np.full(values, -1)
+        unknown[list(stiff)] = np.arange(len(stiff))
+        owners = np.array(value, dtype=np.int64)
+        scale, least = np.full(values, np.finfo(float).tiny), np.zeros(channels)
+        return cls(*_not_zero(tangent), owners, mean, unknown, scale, least)
 
 
 class Nodes(NamedTuple):
@@ -112,6 +130,19 @@ class Sharp(NamedTuple):
     argument: np.ndarray
     coefficient: np.ndarray
     back: np.ndarray
+
+    @classmethod
+    def of(cls, nodes: np.ndarray, directions: np.ndarray) -> Self:
+        """Of directions (n, arguments)."""
+        back = np.ascontiguousarray(np.linalg.pinv(directions).T)
+        return cls(nodes, *_not_zero(directions), back)
+
+
+def _not_zero(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where each row begins, then columns and values of what is not zero."""
+    rows, columns = np.nonzero(matrix)
+    first = np.searchsorted(rows, np.arange(len(matrix) + 1))
+    return first.astype(np.int64), columns.astype(np.int64), matrix[rows, columns]
 
 
 @inlined

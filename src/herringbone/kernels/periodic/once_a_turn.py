@@ -36,8 +36,26 @@ def answer_to_turns(
         The kernel; it returns for how many gears there is, from `at.end` on, what is added at time
         0 to coordinates (m,) and rates (m,).
     """
-    xs, vs, free = body.xs, body.vs, body.free
-    m, scratch = len(xs), turns_scratch(len(xs))
+    m = len(body.xs)
+    slow = _slow_fitter(turned, accelerate, body, at, owner)
+    swing = _swing_adder(follow, vibrate, body, at, owner)
+
+    @inner(owner)
+    def answer(b: np.ndarray, period: float, turns_of: tuple[float, float]) -> int:
+        gears = slow(b, period, turns_of)
+        swing(b, at.end, _TURN / (period * turns_of[0]))
+        if gears > 1:
+            swing(b, at.end + 2 * m, _TURN / (period * turns_of[1]))
+        return gears
+
+    return answer
+
+
+def _slow_fitter(
+    turned: Callable, accelerate: Callable, body: Body, at: Places, owner: str
+) -> Callable[[np.ndarray, float, tuple[float, float]], int]:
+    """Compile slow(b, period, turns) -> int: of how many gears there are harmonics."""
+    xs, vs, m, scratch = body.xs, body.vs, len(body.xs), turns_scratch(len(body.xs))
 
     @inner(owner)
     def slow(b: np.ndarray, period: float, turns_of: tuple[float, float]) -> int:
@@ -60,6 +78,15 @@ def answer_to_turns(
                 for i in range(m):
                     row[i] += share * (dx[i] - motion[2 * SAMPLES * m + i])
         return fit_turns(b[at.g : at.mean], turns_of, m, b[at.end : at.end + scratch])
+
+    return slow
+
+
+def _swing_adder(
+    follow: Callable, vibrate: Callable, body: Body, at: Places, owner: str
+) -> Callable[[np.ndarray, int, float], None]:
+    """Compile swing(b, begin, w)."""
+    m, free = len(body.xs), body.free
 
     @inner(owner)
     def swing(b: np.ndarray, begin: int, w: float) -> None:
@@ -95,12 +122,4 @@ def answer_to_turns(
         for i in range(m):
             b[begin + i], b[begin + m + i] = x[i], -w * y[i]
 
-    @inner(owner)
-    def answer(b: np.ndarray, period: float, turns_of: tuple[float, float]) -> int:
-        gears = slow(b, period, turns_of)
-        swing(b, at.end, _TURN / (period * turns_of[0]))
-        if gears > 1:
-            swing(b, at.end + 2 * m, _TURN / (period * turns_of[1]))
-        return gears
-
-    return answer
+    return swing

@@ -16,10 +16,10 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.core.declaring.declaration import Declaration
-from herringbone.kernels.compiling.jit import inner, kernel
-from herringbone.kernels.condensed.in_block.shown import ANEW, AT_ONCE, HOLDS, LATER
+from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.signals import STRIDE, all_finite, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG, Out, Rhs, input_kernels
+from herringbone.kernels.stepping.leaping import ANEW, AT_ONCE, LATER, Leaps, no_leaps
 from herringbone.kernels.stepping.local_error import Slots, error_measure, factor
 
 TOO_SMALL = 3
@@ -38,26 +38,6 @@ estimate; what a step errs there grows with the square of its length."""
 def adaptive_work(state_count: int, input_count: int) -> int:
     """Length of the work space that the stepper needs."""
     return Slots.of(state_count).known + 1 + (STRIDE + 1) * input_count
-
-
-@kernel
-def stay(
-    b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
-    tolerance: float, degree: int,
-) -> float:  # fmt: skip
-    """The leap of a component that takes none."""
-    return begin
-
-
-@kernel
-def idle(b: np.ndarray, w: np.ndarray, t: float) -> bool:
-    """Whether such a component can leap, once it is ready."""
-    return False
-
-
-@kernel
-def nothing(b: np.ndarray, w: np.ndarray) -> None:
-    """What it does when its states are to be changed."""
 
 
 def _runge_kutta(
@@ -144,13 +124,50 @@ def _explicit_stepper(
     return explicit
 
 
+def _interval_stepper(
+    declaration: Declaration,
+    explicit: Callable,
+    leaps: Leaps,
+    longest_step: Callable,
+    shortest: float,
+) -> Callable:
+    """Compile interval(b, w, t, h, begin, end, tolerance, degree, can_leap) -> int."""
+    known = Slots.of(declaration.state_count).known
+    leap, forget = leaps.leap, leaps.forget
+    room = shortest * (1.0 - _SAME)
+
+    @inner(declaration.name)
+    def interval(
+        b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
+        tolerance: float, degree: int, can_leap: bool,
+    ) -> int:  # fmt: skip
+        """As `explicit`, with leaps where they can be taken."""
+        done = begin
+        while done < end:
+            reached = leap(b, w, t, h, done, end, tolerance, degree)
+            if reached > done:
+                w[known] = 0.0
+            done = min(end, reached + shortest)
+            if reached < done:
+                forget(b, w)
+                most = LARGEST
+                if can_leap and end - reached >= room:  # there was room for a leap: a law bends
+                    most = _BENT * math.sqrt(tolerance) * longest_step(b, w)
+                status = explicit(b, w, t, h, reached, done, tolerance, degree, most)
+                if status != 0:
+                    return status
+        return 0
+
+    return interval
+
+
 def adaptive_stepper(
     rhs: Rhs,
     out: Out,
     declaration: Declaration,
     next_step: str,
     longest_step: Callable[[np.ndarray, np.ndarray], float],
-    core: Callable[[Callable], tuple[Callable, Callable, Callable, Callable]] | None = None,
+    core: Callable[[Callable], Leaps] | None = None,
     shortest: float = np.inf,
     *,
     later: bool = False,
@@ -162,7 +179,7 @@ def adaptive_stepper(
         declaration: of the component.
         next_step: name of the local that keeps the length of the next inner step [s].
         longest_step: kernel (b, w): no inner step is longer [s].
-        core: makes, of the kernel that sets inputs, those that leap ahead: `in_block.leaps`.
+        core: makes, of the kernel that sets inputs, those that leap ahead.
         shortest: length of its steps that ends where it stops [s].
         later: outputs of a leap are made when they are asked for, where inputs have no nodes.
 
@@ -176,37 +193,10 @@ def adaptive_stepper(
     expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, known + 1)
     following = declaration.index[next_step]
     explicit = _explicit_stepper(rhs, declaration, following, longest_step, set_inputs)
-
-    @inner(declaration.name)
-    def show(b: np.ndarray, w: np.ndarray, t: float, how: int) -> bool:
-        out(b, t)
-        return True
-
-    leap, ready, forget, show = core(set_inputs) if core else (stay, idle, nothing, show)
+    leaps = core(set_inputs) if core else no_leaps(out, declaration.name)
+    interval = _interval_stepper(declaration, explicit, leaps, longest_step, shortest)
+    ready, show = leaps.ready, leaps.show
     kept, kept_count = (declaration.first_kept, declaration.kept) if later else (0, 0)
-    room = shortest * (1.0 - _SAME)
-
-    @inner(declaration.name)
-    def interval(
-        b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
-        tolerance: float, degree: int, leaps: bool,
-    ) -> int:  # fmt: skip
-        """As `explicit`, with leaps where they can be taken."""
-        done = begin
-        while done < end:
-            reached = leap(b, w, t, h, done, end, tolerance, degree)
-            if reached > done:
-                w[known] = 0.0
-            done = min(end, reached + shortest)
-            if reached < done:
-                forget(b, w)
-                most = LARGEST
-                if leaps and end - reached >= room:  # there was room for a leap: a law bends
-                    most = _BENT * math.sqrt(tolerance) * longest_step(b, w)
-                status = explicit(b, w, t, h, reached, done, tolerance, degree, most)
-                if status != 0:
-                    return status
-        return 0
 
     @inner(declaration.name)
     def step(
@@ -214,10 +204,10 @@ def adaptive_stepper(
     ) -> int:
         if not h <= LONGEST_STEP:
             return TOO_LONG
-        leaps = ready(b, w, t)
+        can_leap = ready(b, w, t)
         expand_inputs(b, w, degree)
         intervals = max(degree, 1)
-        status, begin = 0, 0.0
+        status, begin, made = 0, 0.0, True
         how = AT_ONCE if h > 0.0 else ANEW
         if later and degree == 0 and h > 0.0:
             how = LATER
@@ -225,14 +215,14 @@ def adaptive_stepper(
         for node in range(1, intervals + 1):
             end = h if node == intervals else h * node / intervals
             if status == 0 and end > begin:
-                status = interval(b, w, t, h, begin, end, tolerance, degree, leaps)
+                status = interval(b, w, t, h, begin, end, tolerance, degree, can_leap)
             begin = end
             set_inputs(b, w, degree, node / intervals)
-            if show(b, w, t + end, how):
+            made = show(b, w, t + end, how)
+            if made:
                 store_node(b, first_output, outputs, node)
         restore_inputs(b, w, degree)
         if status == 0:
-            made = how != LATER or b[kept + HOLDS] == 0.0
             sound = all_finite(b, 0, n) if made else all_finite(b, kept, kept_count)
             status = 0 if sound else NOT_FINITE
         return status

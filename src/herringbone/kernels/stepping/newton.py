@@ -119,6 +119,41 @@ def newton_solver(
     """
     n = len(unknowns)
     end = scratch + n * n
+    jacobian = _jacobian_maker(residual, unknowns, sizes, scratch, owner)
+    advance = _advancer(residual, unknowns, sizes, scratch, owner)
+
+    @inner(owner)
+    def search(b: np.ndarray, t: float) -> int:
+        r, rows = b[end : end + n], b[end + n : end + 2 * n]
+        residual(b, t, r)
+        first, best, since = 0.0, np.inf, 0
+        for iteration in range(_ITERATIONS):
+            jacobian(b, t)
+            scaled = _largest(r, rows, n)
+            if iteration == 0:
+                first = max(scaled, 1.0)
+            if scaled < _CONVERGED * first:
+                return SETTLED
+            if scaled < _CLOSER * best:
+                best, since = scaled, iteration
+            if iteration - since >= _PATIENCE or not scaled < np.inf:
+                return NOT_FOUND
+            advance(b, t)
+        return NOT_FOUND
+
+    return search
+
+
+def _jacobian_maker(
+    residual: Callable[[np.ndarray, float, np.ndarray], None],
+    unknowns: tuple[int, ...],
+    sizes: tuple[float, ...],
+    scratch: int,
+    owner: str,
+) -> Callable[[np.ndarray, float], None]:
+    """Compile jacobian(b, t), beside the residual there; see `newton_solver`."""
+    n = len(unknowns)
+    end = scratch + n * n
 
     @inner(owner)
     def jacobian(b: np.ndarray, t: float) -> None:
@@ -138,6 +173,20 @@ def newton_solver(
         for i in range(n):
             if rows[i] == 0.0:
                 rows[i] = 1.0
+
+    return jacobian
+
+
+def _advancer(
+    residual: Callable[[np.ndarray, float, np.ndarray], None],
+    unknowns: tuple[int, ...],
+    sizes: tuple[float, ...],
+    scratch: int,
+    owner: str,
+) -> Callable[[np.ndarray, float], None]:
+    """Compile advance(b, t), by that Jacobian; see `newton_solver`."""
+    n = len(unknowns)
+    end = scratch + n * n
 
     @inner(owner)
     def advance(b: np.ndarray, t: float) -> None:
@@ -164,23 +213,4 @@ def newton_solver(
                 b[unknowns[i]] -= part * x[i]
         residual(b, t, r)
 
-    @inner(owner)
-    def search(b: np.ndarray, t: float) -> int:
-        r, rows = b[end : end + n], b[end + n : end + 2 * n]
-        residual(b, t, r)
-        first, best, since = 0.0, np.inf, 0
-        for iteration in range(_ITERATIONS):
-            jacobian(b, t)
-            scaled = _largest(r, rows, n)
-            if iteration == 0:
-                first = max(scaled, 1.0)
-            if scaled < _CONVERGED * first:
-                return SETTLED
-            if scaled < _CLOSER * best:
-                best, since = scaled, iteration
-            if iteration - since >= _PATIENCE or not scaled < np.inf:
-                return NOT_FOUND
-            advance(b, t)
-        return NOT_FOUND
-
-    return search
+    return advance

@@ -24,9 +24,9 @@ from herringbone.kernels import steppers
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.condensed.in_block.condense import FOUND
 from herringbone.kernels.condensed.in_block.form import Form
-from herringbone.kernels.condensed.in_block.leaps import leaper, readier
+from herringbone.kernels.condensed.in_block.leaps import core_kernels, leaper
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, kept_size, work_places
-from herringbone.kernels.condensed.in_block.shown import HOLDS, STALE, show_kernels
+from herringbone.kernels.condensed.in_block.states import HOLDS, STALE
 from herringbone.kernels.stepping.adaptive import (
     FIRST,
     LARGEST,
@@ -63,7 +63,11 @@ Wanner, Solving Ordinary Differential Equations II, 1996, section IV.2); and a s
 which steeper tangents than the mean ones may do."""
 _REMARK = """
 
-MICRO_STEP = {without_form!r}
+@kernel
+def longest_inner_step(b: np.ndarray, w: np.ndarray) -> float:
+    if w[{status}] != {found}:
+        return {without_form!r}
+    return min({longest!r}, {stable!r} / w[{fastest}])
 
 
 @kernel
@@ -112,9 +116,9 @@ def by_tolerance(module: ModuleType) -> ByTolerance:
 
 
 def remark_source(found: Stepping, micro_step: int) -> str:
-    """Source of the kernel of the remarks, and the micro step that the step is compiled with.
+    """Source of the kernels of the remarks and of the longest inner step [s].
 
-    Native code is kept by this source, so that what is compiled in stands in it.
+    Native code is kept by this source, so that the micro step that is compiled in stands in it.
 
     Args:
         found: how the system steps.
@@ -122,6 +126,9 @@ def remark_source(found: Stepping, micro_step: int) -> str:
     """
     return _REMARK.format(
         without_form=float(found.micro_step),
+        found=float(FOUND),
+        longest=LARGEST,
+        stable=_STABLE,
         micro_step=micro_step,
         status=found.at.status,
         fastest=found.at.fastest,
@@ -155,18 +162,13 @@ def step_kernel(
         found: how it steps.
         micro_step: name of the parameter that, above 0, asks for Runge-Kutta alone.
     """
-    d, at, micro = declaration, found.at, module.MICRO_STEP
+    d, at = declaration, found.at
     kept, refresh = d.first_kept, module.refresh
     sizes = (*(v.nominal for v in d.states), *(_HIDDEN,) * d.hidden_states)
     equations = equations_of(d, module, sizes, kept)
 
-    @inner(d.name)
-    def longest_inner_step(b: np.ndarray, w: np.ndarray) -> float:
-        if w[at.status] != FOUND:
-            return micro
-        return min(LARGEST, _STABLE / w[at.fastest])
-
-    ready = readier(found.form, at, equations)
+    core = core_kernels(found.form, at, equations)
+    ready = core.ready
     fixed = steppers.body_stepper(module.system_rhs, module.system_out, d)
     micro_at, tolerance, degree = d.indices(micro_step, TOLERANCE, INTERFACE_DEGREE)
 
@@ -176,8 +178,8 @@ def step_kernel(
             module.system_out,
             d,
             NEXT_STEP,
-            longest_inner_step,
-            partial(leaper, found.form, at, equations, ready),
+            module.longest_inner_step,
+            partial(leaper, found.form, at, equations, core),
             LENGTHS[-1],
             later=later,
         )
@@ -194,7 +196,7 @@ def step_kernel(
 
         return step
 
-    asked, everything = show_kernels(found.form, at, equations)
+    asked, everything = core.shown
 
     @inner(d.name)
     def answer(b, w, t, references, count):  # noqa: ANN001, ANN202 (see `Asked`)

@@ -112,11 +112,7 @@ class Solution:
             float(np.any(modes.inputs[:, -1]) or np.any(modes.of_channels[:, -1])),
             close,
             lean,
-            Sharp(
-                np.array(LOBATTO[degree]),
-                *_not_zero(sharp),
-                np.ascontiguousarray(np.linalg.pinv(sharp).T),
-            ),
+            Sharp.of(np.array(LOBATTO[degree]), sharp),
         )
         start = modes.start
         self.state = State(
@@ -330,13 +326,6 @@ class Solution:
             f"{rungs.lengths[-1]:g} s: {why}",
             float(t),
         )
-
-
-def _not_zero(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where each row begins, then columns and values of what is not zero."""
-    rows, columns = np.nonzero(matrix)
-    first = np.searchsorted(rows, np.arange(len(matrix) + 1))
-    return first.astype(np.int64), columns.astype(np.int64), matrix[rows, columns]
 
 
 def _filled(values: np.ndarray) -> np.ndarray:

@@ -148,23 +148,13 @@ class Condensed:
 
     def table(self, calls: Calls) -> Table:
         """Where values and tangents lie."""
-        unknown = np.full(calls.value[-1], -1)
-        unknown[list(self.stiff)] = np.arange(len(self.stiff))
-        value: list[int] = []
-        for first, (_, laws) in zip(calls.value, self._parts(), strict=False):
-            value += [int(first) + v for v in laws.stiff]
-        rows, arguments = np.nonzero(self.modes.tangent)
-        first = np.searchsorted(rows, np.arange(len(self.modes.tangent) + 1))
-        return Table(
-            first.astype(np.int64),
-            arguments.astype(np.int64),
-            self.modes.tangent[rows, arguments],
-            np.array(value, dtype=np.int64),
-            self._means,
-            unknown,
-            np.full(calls.value[-1], np.finfo(float).tiny),
-            np.zeros(self.equations.channels),
-        )
+        owners = [
+            int(first) + v
+            for first, (_, laws) in zip(calls.value, self._parts(), strict=False)
+            for v in laws.stiff
+        ]
+        channels = self.equations.channels
+        return Table.of(self.modes.tangent, owners, self._means, self.stiff, channels)
 
 
 def condensed(

@@ -1,7 +1,6 @@
 """The arrays of a core in its work space, as the kernels of `kernels.condensed` take them."""
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,46 +12,22 @@ from herringbone.kernels.condensed.in_block.form import Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
 
 
-class Fixed(NamedTuple):
-    """What depends on the form alone, see `collocation`."""
-
-    first: np.ndarray
-    argument: np.ndarray
-    tangent: np.ndarray
-    value: np.ndarray
-    mean: np.ndarray
-    unknown: np.ndarray
-    sharp: Sharp
+def sharp_directions(form: Form) -> Sharp:
+    """Of a form."""
+    return Sharp.of(form.nodes, form.sharp)
 
 
-def fixed_arrays(form: Form) -> Fixed:
-    """Where values and tangents lie, and the sharp directions."""
-    unknown = np.full(form.values, -1)
-    unknown[list(form.stiff)] = np.arange(len(form.stiff))
+def _fixed_table(form: Form) -> Table:
+    """What depends on the form alone; scale and least lie in the work space."""
     tangent = np.zeros((form.values, form.arguments))
     tangent[list(form.stiff)] = form.tangent
-    rows, arguments = map(np.ascontiguousarray, np.nonzero(tangent))
-    along, of = map(np.ascontiguousarray, np.nonzero(form.sharp))
-    return Fixed(
-        np.searchsorted(rows, np.arange(form.values + 1)),
-        arguments,
-        tangent[rows, arguments],
-        np.array([form.stiff[k] for k in form.of_tangent]),
-        form.mean,
-        unknown,
-        Sharp(
-            form.nodes,
-            np.searchsorted(along, np.arange(len(form.sharp) + 1)),
-            of,
-            form.sharp[along, of],
-            np.ascontiguousarray(np.linalg.pinv(form.sharp).T),
-        ),
-    )
+    owners = [form.stiff[k] for k in form.of_tangent]
+    return Table.of(tangent, owners, form.mean, form.stiff, form.channels)
 
 
 def array_kernels(form: Form, at: WorkPlaces, owner: str) -> tuple[Callable, Callable, Callable]:
     """Kernels that find the arrays of a step: tables(w), nodes(w) and corrections(w)."""
-    fixed, inner, unknowns = fixed_arrays(form), form.degree, len(form.stiff)
+    fixed, inner, unknowns = _fixed_table(form), form.degree, len(form.stiff)
     tangents, size = len(form.directions), unknowns * form.degree
     values, arguments, kinks, channels = form.values, form.arguments, form.kinks, form.channels
 

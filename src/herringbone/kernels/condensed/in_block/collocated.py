@@ -9,7 +9,7 @@ from herringbone.kernels.compiling.views import integers, matrix
 from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.collocation import residuals, spread
 from herringbone.kernels.condensed.correction import correct
-from herringbone.kernels.condensed.in_block.arrays import array_kernels, fixed_arrays
+from herringbone.kernels.condensed.in_block.arrays import array_kernels, sharp_directions
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
 from herringbone.kernels.condensed.modal import add_chosen, copy, turn
@@ -32,7 +32,7 @@ def iteration(form: Form, at: WorkPlaces, equations: Equations) -> Callable:
     owner, laws = equations.owner, equations.laws
     degree, count, values, channels = form.degree, form.degree + 1, form.values, form.channels
     unknowns, tangents = len(form.stiff), len(form.directions)
-    places, size, sharp = form.nodes, len(form.stiff) * form.degree, fixed_arrays(form).sharp
+    places, size, sharp = form.nodes, len(form.stiff) * form.degree, sharp_directions(form)
     table_of, nodes_of, room_of = array_kernels(form, at, owner)
     stiff = np.array(form.stiff)
 

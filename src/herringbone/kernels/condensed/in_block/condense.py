@@ -9,7 +9,7 @@ from herringbone.kernels.compiling.jit import outside
 from herringbone.kernels.condensed.in_block.apart import apart_taker
 from herringbone.kernels.condensed.in_block.check import checker
 from herringbone.kernels.condensed.in_block.form import Equations, Form
-from herringbone.kernels.condensed.in_block.in_modes import mode_finder
+from herringbone.kernels.condensed.in_block.in_modes import mode_arranger, mode_finder
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
 from herringbone.kernels.condensed.in_block.rung import rung_maker
 from herringbone.kernels.condensed.in_block.seen import seen_arranger
@@ -31,7 +31,8 @@ def condenser(
     capacity = at.capacity
     owner, lengths, rungs = equations.owner, np.array(form.lengths), len(form.lengths)
     apart, holds = apart_taker(form, at, equations), checker(form, at, equations)
-    (find, arrange), make = mode_finder(form, at, owner), rung_maker(form, at, owner)
+    find, arrange = mode_finder(form, at, owner), mode_arranger(at, owner)
+    make = rung_maker(form, at, owner)
     arrange_seen, outputs = seen_arranger(form, at, owner), form.outputs
 
     @outside(owner)

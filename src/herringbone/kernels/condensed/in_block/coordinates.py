@@ -10,7 +10,7 @@ from herringbone.kernels.condensed.collocation import less_tangents
 from herringbone.kernels.condensed.in_block.arrays import array_kernels
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, kept_size
-from herringbone.kernels.condensed.in_block.shown import ALL, COORDINATES, HOLDS, STALE
+from herringbone.kernels.condensed.in_block.states import COORDINATES, HOLDS
 from herringbone.kernels.condensed.modal import add_product, copy
 
 _NEGLIGIBLE = 1e-5
@@ -18,16 +18,8 @@ _NEGLIGIBLE = 1e-5
 stiff values do, to be left out."""
 
 
-def coordinate_kernels(
-    form: Form, at: WorkPlaces, equations: Equations
-) -> tuple[Callable, Callable, Callable, Callable, Callable]:
-    """Compile the ways between states and coordinates.
-
-    They are enter(b, w, t, close), which writes the laws there, too, and leave(b, w). With a place
-    for what is kept, states are not made by the latter, but are stale from then on; and there are
-    belongs(b, w) -> bool: whether the states that are not stale are to the bit those that follow
-    from it; settle(b, w): makes states that are stale; and forget(b, w): does so, as they are to be
-    changed.
+def enterer(form: Form, at: WorkPlaces, equations: Equations) -> Callable:
+    """Compile enter(b, w, t, close): writes coordinates of the states, and the laws there.
 
     Args:
         form: of the component.
@@ -38,7 +30,6 @@ def coordinate_kernels(
     size, goes_on = kept_size(form) - COORDINATES, equations.kept >= 0
     first = kept + COORDINATES
     laws_there, neglect = _law_writer(form, at, equations), _neglecter(form, at, owner)
-    states_of, kept_states, write_states = _state_writers(form, at, equations)
 
     @inner(owner)
     def enter(b: np.ndarray, w: np.ndarray, t: float, close: float) -> None:
@@ -64,85 +55,7 @@ def coordinate_kernels(
         neglect(w, modes, close)
         w[at.before] = -1.0
 
-    @inner(owner)
-    def leave(b: np.ndarray, w: np.ndarray) -> None:
-        modes = int(w[at.modes])
-        for r in range(int(w[at.rotations])):
-            b[int(w[at.references + r])] += w[at.q + 2 * modes + r]
-            w[at.q + 2 * modes + r] = 0.0
-        if goes_on:
-            b[kept + HOLDS], b[kept + STALE] = 1.0, ALL
-            copy(w[at.q : at.q + size], b[first : first + size])
-            for r in range(int(w[at.rotations])):
-                b[first + 2 * modes + r] = b[int(w[at.references + r])]
-        else:
-            states_of(b, w)
-            write_states(b, w)
-
-    @outside(owner)
-    def belongs(b: np.ndarray, w: np.ndarray) -> bool:
-        if not goes_on or b[kept + HOLDS] == 0.0:
-            return False
-        if b[kept + STALE] != 0.0:
-            return True
-        kept_states(b, w)
-        for i in range(int(w[at.inside])):
-            if b[int(w[at.states + i])] != w[at.x + i]:
-                return False
-        return True
-
-    @inner(owner)
-    def settle(b: np.ndarray, w: np.ndarray) -> None:
-        if goes_on and b[kept + STALE] != 0.0:
-            kept_states(b, w)
-            write_states(b, w)
-            b[kept + STALE] = 0.0
-
-    @inner(owner)
-    def forget(b: np.ndarray, w: np.ndarray) -> None:
-        if goes_on:
-            settle(b, w)
-            b[kept + HOLDS] = 0.0
-
-    return enter, leave, belongs, settle, forget
-
-
-def _state_writers(
-    form: Form, at: WorkPlaces, equations: Equations
-) -> tuple[Callable, Callable, Callable]:
-    """Compile states_of, kept_states and write_states, each (b, w).
-
-    The states inside, in `at.x`, at the angles of the block and the coordinates there or those that
-    are kept; and from `at.x` to the block.
-    """
-    owner, n, first = equations.owner, form.states, equations.kept + COORDINATES
-
-    @inner(owner)
-    def states_of(b: np.ndarray, w: np.ndarray) -> None:
-        """Write the states inside to `at.x`, at the angles of the block."""
-        inside, modes = int(w[at.inside]), int(w[at.modes])
-        x = w[at.x : at.x + inside]
-        for i in range(inside):
-            x[i] = 0.0
-        shapes = matrix(w, at.shapes, 2 * modes, inside)
-        add_product(shapes, w[at.q : at.q + 2 * modes], x)
-        for r in range(int(w[at.rotations])):
-            angle, v = b[int(w[at.references + r])], w[at.rigid + r * n : at.rigid + (r + 1) * n]
-            for i in range(inside):
-                x[i] += v[int(w[at.states + i])] * angle
-
-    @outside(owner)
-    def kept_states(b: np.ndarray, w: np.ndarray) -> None:
-        """As `states_of`, at the coordinates that are kept."""
-        copy(b[first : first + at.q_size], w[at.q : at.q + at.q_size])
-        states_of(b, w)
-
-    @inner(owner)
-    def write_states(b: np.ndarray, w: np.ndarray) -> None:
-        for i in range(int(w[at.inside])):
-            b[int(w[at.states + i])] = w[at.x + i]
-
-    return states_of, kept_states, write_states
+    return enter
 
 
 def _law_writer(form: Form, at: WorkPlaces, equations: Equations) -> Callable:

@@ -10,22 +10,50 @@ from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_plac
 from herringbone.kernels.eigen.vectors import modes as find_modes
 
 
-def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
-    form: Form, at: WorkPlaces, owner: str
-) -> tuple[Callable[[np.ndarray], bool], Callable[[np.ndarray], None]]:
-    """Compile find(w) -> bool, which writes the modes, and arrange(w), when they are checked.
+def mode_finder(form: Form, at: WorkPlaces, owner: str) -> Callable[[np.ndarray], bool]:
+    """Compile find(w) -> bool: writes the modes, what acts on them and what is wanted of them.
+
+    It is False if there are none.
 
     Args:
         form: of the component.
         at: places in the work space.
         owner: of the kernels.
     """
-    n, channels, arguments, capacity = form.states, form.channels, form.arguments, at.capacity
-    of = taken_places(form, at.rungs)
+    eigenvalues, seen = _eigenvalue_finder(form, at, owner), _row_writer(at, owner)
+    driven, channels, arguments = _channel_writer(form, at, owner), form.channels, form.arguments
+    n, capacity, of = form.states, at.capacity, taken_places(form, at.rungs)
+
+    @outside(owner)
+    def in_modes(w: np.ndarray) -> None:
+        k = 0
+        for mode in range(int(w[at.modes])):
+            for row in range(arguments):
+                to = at.carg + row * capacity + mode
+                seen(w, of.of_states + row * n, k, mode, to, arguments * capacity)
+            for r in range(int(w[at.rotations])):
+                to = at.turns + 2 * r * capacity + mode
+                seen(w, of.whole + int(w[at.references + r]) * n, k, mode, to, capacity)
+            for c in range(channels):
+                driven(w, c, k, mode)
+            k += 2 if w[at.rates + capacity + mode] != 0.0 else 1
+
+    @outside(owner)
+    def find(w: np.ndarray) -> bool:
+        if not eigenvalues(w):
+            return False
+        in_modes(w)
+        return True
+
+    return find
+
+
+def _eigenvalue_finder(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile eigenvalues(w) -> bool: finds the modes; False if there are none."""
+    n, capacity, of = form.states, at.capacity, taken_places(form, at.rungs)
 
     @outside(owner)
     def eigenvalues(w: np.ndarray) -> bool:
-        """Find the modes; False if there are none."""
         count = int(w[at.inside])
         states, a = w[at.states : at.states + count], w[of.matrix : of.matrix + count * count]
         for i in range(count):
@@ -47,6 +75,13 @@ def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
             w[at.rates + capacity + mode] = w[of.rates + mode]
         return True
 
+    return eigenvalues
+
+
+def _row_writer(at: WorkPlaces, owner: str) -> Callable:
+    """Compile seen(w, row, k, mode, to, apart)."""
+    capacity = at.capacity
+
     @outside(owner)
     def seen(w: np.ndarray, row: int, k: int, mode: int, to: int, apart: int) -> None:
         """Write what a row over the states is of a mode, real and imaginary part `apart`."""
@@ -59,6 +94,14 @@ def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
             if pair:
                 h += value * w[at.shapes + i * count + k + 1]
         w[to], w[to + apart] = g, h
+
+    return seen
+
+
+def _channel_writer(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile driven(w, channel, k, mode)."""
+    n, channels, capacity = form.states, form.channels, at.capacity
+    of = taken_places(form, at.rungs)
 
     @outside(owner)
     def driven(w: np.ndarray, channel: int, k: int, mode: int) -> None:
@@ -80,31 +123,18 @@ def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
         w[at.bq + channel * capacity + mode] = g
         w[at.bq + (channels + channel) * capacity + mode] = h
 
-    @outside(owner)
-    def in_modes(w: np.ndarray) -> None:
-        """Write what acts on the modes, and what is wanted of them."""
-        k = 0
-        for mode in range(int(w[at.modes])):
-            for row in range(arguments):
-                to = at.carg + row * capacity + mode
-                seen(w, of.of_states + row * n, k, mode, to, arguments * capacity)
-            for r in range(int(w[at.rotations])):
-                to = at.turns + 2 * r * capacity + mode
-                seen(w, of.whole + int(w[at.references + r]) * n, k, mode, to, capacity)
-            for c in range(channels):
-                driven(w, c, k, mode)
-            k += 2 if w[at.rates + capacity + mode] != 0.0 else 1
+    return driven
 
-    @outside(owner)
-    def find(w: np.ndarray) -> bool:
-        if not eigenvalues(w):
-            return False
-        in_modes(w)
-        return True
+
+def mode_arranger(at: WorkPlaces, owner: str) -> Callable[[np.ndarray], None]:
+    """Compile arrange(w): `at.back` and `at.shapes` by columns, when the modes are checked.
+
+    They are over the coordinates as a step has them.
+    """
+    capacity = at.capacity
 
     @outside(owner)
     def arrange(w: np.ndarray) -> None:
-        """Write back and shapes by columns, over the coordinates as a step has them."""
         count, modes, k = int(w[at.inside]), int(w[at.modes]), 0
         to, size = w[at.rungs :], 2 * modes * count
         for mode in range(modes):
@@ -120,4 +150,4 @@ def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
         for i in range(size):
             w[at.back + i], w[at.shapes + i] = to[i], to[size + i]
 
-    return find, arrange
+    return arrange

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,11 +11,13 @@ from herringbone.kernels.compiling.views import integers, matrix
 from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.in_block.collocated import advancing, doubts, iteration
 from herringbone.kernels.condensed.in_block.condense import FOUND, condenser
-from herringbone.kernels.condensed.in_block.coordinates import coordinate_kernels
+from herringbone.kernels.condensed.in_block.coordinates import enterer
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
-from herringbone.kernels.condensed.in_block.shown import shower
+from herringbone.kernels.condensed.in_block.shown import ShowKernels, show_kernels, shower
+from herringbone.kernels.condensed.in_block.states import StateKernels, state_kernels
 from herringbone.kernels.condensed.modal import add_chosen, add_product
+from herringbone.kernels.stepping.leaping import Leaps
 
 _CLOSE = 10.0
 """Residual of the laws' values, over their size and the tolerance, whose correction solves a step.
@@ -93,10 +96,32 @@ def step_beginner(
     return begin_step
 
 
-def readier(form: Form, at: WorkPlaces, equations: Equations) -> Callable:
-    """Compile ready(b, w, t) -> bool: seeks the condensed form, once; True if there is one."""
-    condense = condenser(form, at, equations)
-    _, _, belongs, _, forget = coordinate_kernels(form, at, equations)
+class Core(NamedTuple):
+    """Kernels of the condensed core of a component, each compiled once for all its steps.
+
+    Attributes:
+        ready: (b, w, t) -> bool: seeks the condensed form, once; True if there is one.
+        enter: see `coordinates.enterer`.
+        states: from coordinates to states.
+        shown: outputs straight from the coordinates, if there are some.
+    """
+
+    ready: Callable
+    enter: Callable
+    states: StateKernels
+    shown: ShowKernels
+
+
+def core_kernels(form: Form, at: WorkPlaces, equations: Equations) -> Core:
+    """Compile what all steps of a component share.
+
+    Args:
+        form: of the component.
+        at: places in the work space.
+        equations: of the component.
+    """
+    condense, states = condenser(form, at, equations), state_kernels(form, at, equations)
+    belongs, forget = states.belongs, states.forget
 
     @inner(equations.owner)
     def ready(b: np.ndarray, w: np.ndarray, t: float) -> bool:
@@ -106,30 +131,13 @@ def readier(form: Form, at: WorkPlaces, equations: Equations) -> Callable:
                 forget(b, w)
         return w[at.status] == FOUND
 
-    return ready
+    enter, shown = enterer(form, at, equations), show_kernels(form, at, equations)
+    return Core(ready, enter, states, shown)
 
 
-def leaper(
-    form: Form, at: WorkPlaces, equations: Equations, ready: Callable, set_inputs: Callable
-) -> tuple[Callable, Callable, Callable, Callable]:
-    """Compile the leaps of a component.
-
-    Returns:
-        leap(b, w, t, h, begin, end, tolerance, order) -> float: from t + begin towards t + end
-        inside of a macro step of length h [s]; time since t that it has reached. It leaves what is
-        shorter than the shortest step, and stops where in the shortest step a law bends or its
-        values are rough, and where the iteration does not end.
-        ready(b, w, t) -> bool: as given, see `readier`.
-        forget(b, w): the states are to be others than it left.
-        show(b, w, t, how) -> bool: see `shown.shower`.
-    """
-    owner, prepare, period = equations.owner, equations.prepare, equations.period
-    enter, leave, _, settle, forget = coordinate_kernels(form, at, equations)
-    begin_step = step_beginner(form, at, equations, set_inputs)
-    iterate, advance = iteration(form, at, equations), advancing(form, at, owner)
-    bends, rough = doubts(form, at, owner)
-    lengths, rungs, roughest = np.array(form.lengths), len(form.lengths), form.rough
-    shortest = float(lengths[-1])
+def _chooser(form: Form, owner: str) -> Callable:
+    """Compile choose(most, left) -> int."""
+    lengths, rungs = np.array(form.lengths), len(form.lengths)
 
     @inner(owner)
     def choose(most: float, left: float) -> int:
@@ -147,6 +155,31 @@ def leaper(
             if length < 0.5 * most:
                 break
         return longest
+
+    return choose
+
+
+def leaper(
+    form: Form, at: WorkPlaces, equations: Equations, core: Core, set_inputs: Callable
+) -> Leaps:
+    """Compile the leaps of a component.
+
+    They leave what is shorter than the shortest step, and stop where in the shortest step a law
+    bends or its values are rough, and where the iteration does not end.
+
+    Args:
+        form: of the component.
+        at: places in the work space.
+        equations: of the component.
+        core: of the component.
+        set_inputs: see `steppers.input_kernels`.
+    """
+    owner, prepare, period = equations.owner, equations.prepare, equations.period
+    enter, leave, choose = core.enter, core.states.leave, _chooser(form, owner)
+    begin_step = step_beginner(form, at, equations, set_inputs)
+    iterate, advance = iteration(form, at, equations), advancing(form, at, owner)
+    bends, rough = doubts(form, at, owner)
+    lengths, roughest, shortest = np.array(form.lengths), form.rough, float(form.lengths[-1])
 
     @inner(owner)
     def leap(
@@ -185,4 +218,5 @@ def leaper(
             leave(b, w)
         return end if end - done < shortest * _SAME else done
 
-    return leap, ready, forget, shower(form, at, equations, settle)
+    show = shower(form, at, equations, core.states.settle, core.shown.everything)
+    return Leaps(leap, core.ready, core.states.forget, show)

@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.kernels.condensed.in_block.form import Form, Shown
+from herringbone.kernels.condensed.lines import padded
 from herringbone.kernels.eigen.vectors import room
 from herringbone.kernels.signals import STRIDE
 
 _SPARE = 16
 """Modes that are not oscillations, at most twice as many, for which there is room."""
-LINE = 8
 _SCRATCH = 64
 
 
@@ -40,7 +40,9 @@ class WorkPlaces(NamedTuple):
         bq: (2, channels, capacity), inputs of the modes.
         shapes, back: see `kernels.eigen.vectors`; when all is found, by columns over coordinates.
         room: for a node of a mode.
-        full: (q_size + channels x nodes, (nodes - 1) x arguments), while a rung is made.
+        full: (q_size, (nodes - 1) x arguments): arguments at all nodes, of the coordinates, while
+            a rung is made.
+        full_inputs: (channels x nodes, (nodes - 1) x arguments): the same of the inputs.
         seen: (2 modes + rotations + channels, states inside and outputs, in whole lines), see
             `in_block.seen`.
         bent: (outputs,) 1 where one is not affine.
@@ -95,6 +97,7 @@ class WorkPlaces(NamedTuple):
     back: int
     room: int
     full: int
+    full_inputs: int
     seen: int
     bent: int
     asked: int
@@ -156,11 +159,6 @@ class Taken(NamedTuple):
     end: int
 
 
-def lines(count: int) -> int:
-    """A count of reals that fills whole lines of the cache."""
-    return -(-count // LINE) * LINE
-
-
 def taken_places(form: Form, first: int) -> Taken:
     """Places from `first` on."""
     n, rows = form.states, form.states + form.outputs
@@ -176,7 +174,7 @@ def _state_sizes(form: Form) -> tuple[int, ...]:
     channels, angles = form.channels, len(form.turning)
     given = channels * (form.degree + 1)
     return (
-        lines(form.states + _SPARE + angles), given, form.values, channels, 1, form.arguments,
+        padded(form.states + _SPARE + angles), given, form.values, channels, 1, form.arguments,
         (form.degree + 1) * form.kinks,
     )  # fmt: skip
 
@@ -190,7 +188,7 @@ def output_places(shown: Shown) -> np.ndarray:
 
 
 def kept_size(form: Form) -> int:
-    """How many reals a core goes on with, see `shown.STALE`, `shown.HOLDS`."""
+    """How many reals a core goes on with, see `states.STALE`, `states.HOLDS`."""
     return 2 + sum(_state_sizes(form))
 
 
@@ -199,9 +197,9 @@ def _shown_sizes(form: Form, q_size: int) -> tuple[int, ...]:
     if not form.outputs:
         return (0,) * 10
     rows = form.states + form.outputs
-    matrix = (q_size + form.channels) * lines(rows)
+    matrix = (q_size + form.channels) * padded(rows)
     parts = len(form.shown.states)
-    return matrix, form.outputs, rows, rows, parts, 1, 1, matrix, lines(rows), form.states
+    return matrix, form.outputs, rows, rows, parts, 1, 1, matrix, padded(rows), form.states
 
 
 def work_places(form: Form, first: int) -> WorkPlaces:
@@ -210,7 +208,7 @@ def work_places(form: Form, first: int) -> WorkPlaces:
     angles, stiff, tangents = len(form.turning), len(form.stiff), len(form.directions)
     capacity, given, unknowns = (n + _SPARE) // 2, channels * (degree + 1), stiff * degree
     of_state = _state_sizes(form)
-    q_size, width = of_state[0], lines(form.rows + angles)
+    q_size, width = of_state[0], padded(form.rows + angles)
     matrices = (
         2 * capacity, q_size * width, given * width, given * q_size, unknowns * degree * tangents,
     )  # fmt: skip
@@ -218,9 +216,10 @@ def work_places(form: Form, first: int) -> WorkPlaces:
         1, 1, 1, 1, 1, n, angles, angles * n, 2 * capacity, 2 * angles * capacity,
         angles * arguments, arguments * channels, 2 * arguments * capacity,
         2 * channels * capacity, n * (n + _SPARE), n * (n + _SPARE), _SCRATCH,
-        (q_size + given) * degree * arguments, *_shown_sizes(form, q_size), n, channels, *of_state,
-        given, given, given, width, width, degree * arguments, degree * form.values,
-        degree * tangents, unknowns * unknowns, unknowns, unknowns, stiff, degree * tangents,
+        q_size * degree * arguments, given * degree * arguments, *_shown_sizes(form, q_size),
+        n, channels, *of_state, given, given, given, width, width, degree * arguments,
+        degree * form.values, degree * tangents, unknowns * unknowns, unknowns, unknowns, stiff,
+        degree * tangents,
     )  # fmt: skip
     rung, own = list(accumulate(matrices, initial=0)), list(accumulate(arrays, initial=first))
     end = max(own[-1] + len(form.lengths) * rung[-1], taken_places(form, own[-1]).end)

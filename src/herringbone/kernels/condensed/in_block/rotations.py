@@ -17,9 +17,7 @@ _RIGID = 1e-12
 """What is left of a column after elimination, over the largest element, of a rotation."""
 
 
-def rotation_finder(  # noqa: PLR0915 (kernels that share their layout)
-    form: Form, at: WorkPlaces, owner: str
-) -> Callable[[np.ndarray], bool]:
+def rotation_finder(form: Form, at: WorkPlaces, owner: str) -> Callable[[np.ndarray], bool]:
     """Compile find(w) -> bool: writes rotations and what else depends on them; False: they push.
 
     Args:
@@ -27,8 +25,34 @@ def rotation_finder(  # noqa: PLR0915 (kernels that share their layout)
         at: places in the work space.
         owner: of the kernels.
     """
-    n, channels, arguments = form.states, form.channels, form.arguments
-    turning, count = np.array([*form.turning, 0]), len(form.turning)
+    n, count, of = form.states, len(form.turning), taken_places(form, at.rungs)
+    columns, eliminate = _column_writer(form, at, owner), _eliminator(form, at, owner)
+    rigid, apart_from = _rotation_writer(form, at, owner), _angle_remover(form, at, owner)
+
+    @outside(owner)
+    def find(w: np.ndarray) -> bool:
+        order, driven = w[of.rates : of.rates + n], 0.0
+        for k in range(count):
+            order[k] = k
+        rank = eliminate(w, order, _RIGID * columns(w))
+        w[at.rotations] = count - rank
+        for r in range(count - rank):
+            rigid(w, order, rank, r)
+        for r in range(count - rank):
+            driven += apart_from(w, r)
+        return driven == 0.0
+
+    return find
+
+
+def _turning(form: Form) -> np.ndarray:
+    """States that turn; one more, as a kernel has no empty arrays."""
+    return np.array([*form.turning, 0])
+
+
+def _column_writer(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile columns(w) -> float."""
+    n, turning, count = form.states, _turning(form), len(form.turning)
     of = taken_places(form, at.rungs)
 
     @outside(owner)
@@ -44,6 +68,13 @@ def rotation_finder(  # noqa: PLR0915 (kernels that share their layout)
                 w[of.matrix + i * count + k] = value / size if value != 0.0 else 0.0
                 largest = max(largest, abs(w[of.matrix + i * count + k]))
         return largest
+
+    return columns
+
+
+def _eliminator(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile eliminate(w, order, least) -> int."""
+    n, count, of = form.states, len(form.turning), taken_places(form, at.rungs)
 
     @outside(owner)
     def exchange(w: np.ndarray, order: np.ndarray, row: int, column: int, k: int) -> None:
@@ -75,6 +106,14 @@ def rotation_finder(  # noqa: PLR0915 (kernels that share their layout)
                         a[i * count + j] -= by * a[k * count + j]
         return count
 
+    return eliminate
+
+
+def _rotation_writer(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile rigid(w, order, rank, r)."""
+    n, turning, count = form.states, _turning(form), len(form.turning)
+    of = taken_places(form, at.rungs)
+
     @outside(owner)
     def rigid(w: np.ndarray, order: np.ndarray, rank: int, r: int) -> None:
         """Write the rotation that a column beyond the rank makes with those before it."""
@@ -89,6 +128,14 @@ def rotation_finder(  # noqa: PLR0915 (kernels that share their layout)
                 total -= a[k * count + j] * v[turning[int(order[j])]]
             v[turning[int(order[k])]] = total / a[k * count + k]
         w[at.references + r] = turning[int(order[free])]
+
+    return rigid
+
+
+def _angle_remover(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile apart_from(w, r) -> float."""
+    n, channels, arguments = form.states, form.channels, form.arguments
+    of = taken_places(form, at.rungs)
 
     @outside(owner)
     def apart_from(w: np.ndarray, r: int) -> float:
@@ -108,17 +155,4 @@ def rotation_finder(  # noqa: PLR0915 (kernels that share their layout)
                     w[of.whole + i * n + j] -= v[i] * w[of.whole + reference * n + j]
         return driven
 
-    @outside(owner)
-    def find(w: np.ndarray) -> bool:
-        order, driven = w[of.rates : of.rates + n], 0.0
-        for k in range(count):
-            order[k] = k
-        rank = eliminate(w, order, _RIGID * columns(w))
-        w[at.rotations] = count - rank
-        for r in range(count - rank):
-            rigid(w, order, rank, r)
-        for r in range(count - rank):
-            driven += apart_from(w, r)
-        return driven == 0.0
-
-    return find
+    return apart_from

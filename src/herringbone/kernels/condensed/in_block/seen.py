@@ -4,18 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import kernel, outside
+from herringbone.kernels.compiling.jit import outside
 from herringbone.kernels.condensed.in_block.form import Form
-from herringbone.kernels.condensed.in_block.places import LINE, WorkPlaces, taken_places
+from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_places
+from herringbone.kernels.condensed.lines import in_lines
 
 _SAME = 1e-9
 """Of the terms that are added: what grows less with an angle does not know it."""
-
-
-@kernel
-def in_lines(count: int) -> int:
-    """As `places.lines`."""
-    return (count + LINE - 1) // LINE * LINE
 
 
 def seen_arranger(form: Form, at: WorkPlaces, owner: str) -> Callable[[np.ndarray], None]:
