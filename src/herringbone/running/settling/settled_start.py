@@ -6,8 +6,8 @@ balanced with; as what it is given follows from these, answers are looked for th
 
 Own parts turn by the angle by which foreign ones are turned on the way, so that the slowest of
 these begins where it declares. Torques that do not balance speed the drivetrain up evenly, if no
-controller holds the speed: parts settle under this acceleration, too. Where torques
-go with speed (a slip, a propeller), that is moved to where they balance.
+controller holds the speed: parts settle under this acceleration, too. Where torques go with speed
+(a slip, a propeller), the speed is moved to where they balance.
 """
 
 from contextlib import suppress
