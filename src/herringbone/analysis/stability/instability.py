@@ -47,8 +47,11 @@ def warn_if_unstable(
     if amplification.residual > PROMISED:
         return None
     if _grows_itself(amplification, growth, step):
+        where = "linear at the start"
+        if strangers:
+            where += f", and with {', '.join(strangers)} linear at the values declared"
         return (
-            f"{system.name} itself, linear at the start, grows at {hertz(growth.frequency)} "
+            f"{system.name} itself, {where}, grows at {hertz(growth.frequency)} "
             f"{_in_time(growth, step, duration)}, whatever the step"
         )
     return (
