@@ -2,6 +2,7 @@
 
 import math
 import uuid
+from importlib.metadata import version
 from typing import Any, Final
 from xml.etree.ElementTree import Element, SubElement
 
@@ -27,6 +28,33 @@ LOG_CATEGORIES: Final = {
     "logStatusFatal": "Log messages with fmi2Fatal status.",
     "logAll": "Log all messages.",
 }
+
+
+def root_element(
+    component: Component,
+    fmi_version: str,
+    **identity: Any,  # noqa: ANN401 (of typeshed)
+) -> Element:
+    """The root element, empty.
+
+    Args:
+        component: what is described.
+        fmi_version: such as "3.0".
+        identity: `identifier`, by the name that it has in this version.
+    """
+    return Element(
+        "fmiModelDescription",
+        fmiVersion=fmi_version,
+        modelName=component.name,
+        **identity,
+        description=component.declaration.description,
+        author=AUTHOR,
+        version=version("herringbone"),
+        copyright=f"(c) {AUTHOR}",
+        license="MIT",
+        generationTool=f"herringbone {version('herringbone')}",
+        variableNamingConvention="structured",
+    )
 
 
 def identifier(component: Component, built_with: str = "") -> str:
@@ -112,6 +140,11 @@ def starting(component: Component) -> tuple[Variable, ...]:
     d = component.declaration
     found = (*d.states, *d.parameters) if component.hosting is None else (*d.parameters, *d.inputs)
     return tuple(v for v in found if v.name not in d.hidden)
+
+
+def joined(numbers: list[int]) -> str:
+    """A list of numbers, as FMI writes it."""
+    return " ".join(map(str, numbers))
 
 
 def child(parent: Element, tag: str) -> Element:

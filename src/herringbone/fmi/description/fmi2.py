@@ -1,6 +1,5 @@
 """modelDescription.xml of a component (FMI 2.0, co-simulation), made from its declaration alone."""
 
-from importlib.metadata import version
 from typing import Any, Final
 from xml.etree.ElementTree import Element, SubElement
 
@@ -8,7 +7,6 @@ from herringbone.core import Component, Declaration, Text, Variable
 from herringbone.core.declaring.variable import Causality
 from herringbone.fmi import interface
 from herringbone.fmi.description.common import (
-    AUTHOR,
     add_experiment,
     add_items,
     add_log_categories,
@@ -16,6 +14,8 @@ from herringbone.fmi.description.common import (
     child,
     identifier,
     initial,
+    joined,
+    root_element,
     sizes,
     starting,
     type_name,
@@ -45,19 +45,8 @@ def model_description(component: Component, native: UsedStates | None = None) ->
         native: with what the native FMUs can do besides; these are the states that they show.
     """
     declaration = component.declaration
-    root = Element(
-        "fmiModelDescription",
-        fmiVersion="2.0",
-        modelName=component.name,
-        guid=identifier(component, native.built_with if native else ""),
-        description=declaration.description,
-        author=AUTHOR,
-        version=version("herringbone"),
-        copyright=f"(c) {AUTHOR}",
-        license="MIT",
-        generationTool=f"herringbone {version('herringbone')}",
-        variableNamingConvention="structured",
-    )
+    guid = identifier(component, native.built_with if native else "")
+    root = root_element(component, "2.0", guid=guid)
     states = native.scalars() if native else {}
     rates = interface.derivatives(declaration, states)
     if rates:
@@ -157,10 +146,10 @@ def _add_structure(root: Element, component: Component, reals: list[Variable]) -
             continue
         index = str(position[variable.name])
         inputs = sorted(position[name] for name in interface.feedthrough(declaration, variable))
-        unknown = SubElement(outputs, "Unknown", index=index, dependencies=_join(inputs))
+        unknown = SubElement(outputs, "Unknown", index=index, dependencies=joined(inputs))
         if inputs:
             unknown.set("dependenciesKind", " ".join(["dependent"] * len(inputs)))
-        SubElement(unknowns, "Unknown", index=index, dependencies=_join(sorted({*inputs, *exact})))
+        SubElement(unknowns, "Unknown", index=index, dependencies=joined(sorted({*inputs, *exact})))
 
 
 def _add_derivatives(
@@ -186,7 +175,3 @@ def _add_derivatives(
         if variables[position[reference] - 1].get("initial") in {"calculated", "approx"}:
             SubElement(unknowns, "Unknown", index=str(position[reference]))
     unknowns[:] = sorted(unknowns, key=lambda unknown: int(unknown.get("index", "")))
-
-
-def _join(indices: list[int]) -> str:
-    return " ".join(map(str, indices))

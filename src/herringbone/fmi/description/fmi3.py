@@ -5,7 +5,6 @@ scalars of other FMUs connect to X. Value references are those of FMI 2.0: indic
 """
 
 from dataclasses import replace
-from importlib.metadata import version
 from typing import Any, Final
 from xml.etree.ElementTree import Element, SubElement
 
@@ -14,7 +13,6 @@ from herringbone.core.declaring.declaration import node_name
 from herringbone.core.declaring.variable import NODES, Causality
 from herringbone.fmi import interface
 from herringbone.fmi.description.common import (
-    AUTHOR,
     add_experiment,
     add_items,
     add_log_categories,
@@ -22,6 +20,8 @@ from herringbone.fmi.description.common import (
     child,
     identifier,
     initial,
+    joined,
+    root_element,
     sizes,
     starting,
     type_name,
@@ -53,7 +53,8 @@ def model_description_3(used: UsedStates) -> Element:
     declaration = component.declaration
     states = used.arrays()
     rates = interface.derivatives(declaration, {i: v for i, (v, _) in states.items()})
-    root = _root(used)
+    token = identifier(component, used.built_with)
+    root = root_element(component, "3.0", instantiationToken=token)
     if rates:
         SubElement(root, "ModelExchange", modelIdentifier=component.name, **_CAPABILITIES)
     SubElement(root, "CoSimulation", modelIdentifier=component.name, **_STEPS, **_CAPABILITIES)
@@ -69,23 +70,6 @@ def model_description_3(used: UsedStates) -> Element:
         _add_derivatives(root, {i: extent for i, (_, extent) in states.items()}, rates)
         _add_indicators(root, component)
     return root
-
-
-def _root(used: UsedStates) -> Element:
-    component = used.component
-    return Element(
-        "fmiModelDescription",
-        fmiVersion="3.0",
-        modelName=component.name,
-        instantiationToken=identifier(component, used.built_with),
-        description=component.declaration.description,
-        author=AUTHOR,
-        version=version("herringbone"),
-        copyright=f"(c) {AUTHOR}",
-        license="MIT",
-        generationTool=f"herringbone {version('herringbone')}",
-        variableNamingConvention="structured",
-    )
 
 
 def _add_variables(
@@ -128,14 +112,29 @@ def _add_types(root: Element, declaration: Declaration) -> None:
             add_items(SubElement(types, "EnumerationType", name=type_name(variable)), variable)
 
 
-def _enumeration(reference: int, variable: Variable) -> Element:
+def _number(
+    tag: str,
+    reference: int,
+    variable: Variable,
+    **further: Any,  # noqa: ANN401 (of typeshed)
+) -> Element:
+    """A variable, with what all kinds of numbers have, and further attributes."""
     return Element(
-        "Enumeration",
+        tag,
         name=variable.name,
         valueReference=str(reference),
         description=variable.description,
         causality=variable.causality.value,
         variability=variable.variability.value,
+        **further,
+    )
+
+
+def _enumeration(reference: int, variable: Variable) -> Element:
+    return _number(
+        "Enumeration",
+        reference,
+        variable,
         declaredType=type_name(variable),
         initial="exact",
         start=str(int(variable.start)),
@@ -157,16 +156,7 @@ def _references(declaration: Declaration) -> dict[int, tuple[Variable, int]]:
 
 
 def _float64(reference: int, variable: Variable, extent: int, *, settled: bool = False) -> Element:
-    element = Element(
-        "Float64",
-        name=variable.name,
-        valueReference=str(reference),
-        description=variable.description,
-        causality=variable.causality.value,
-        variability=variable.variability.value,
-        unit=variable.unit,
-        **sizes(variable),
-    )
+    element = _number("Float64", reference, variable, unit=variable.unit, **sizes(variable))
     if extent == 1 and variable.causality in {Causality.INPUT, Causality.OUTPUT}:
         element.set("intermediateUpdate", "true")
     if variable.causality is not Causality.INPUT:
@@ -198,7 +188,7 @@ def _add_structure(
             at for at in {*scalars, *(first + 1 for first in scalars)} & set(references)
         )
         output = SubElement(
-            structure, "Output", valueReference=str(reference), dependencies=_join(inputs)
+            structure, "Output", valueReference=str(reference), dependencies=joined(inputs)
         )
         if inputs:
             output.set("dependenciesKind", " ".join(["dependent"] * len(inputs)))
@@ -206,7 +196,7 @@ def _add_structure(
             Element(
                 "InitialUnknown",
                 valueReference=str(reference),
-                dependencies=_join(sorted({*inputs, *exact})),
+                dependencies=joined(sorted({*inputs, *exact})),
             )
         )
     structure.extend(unknowns)
@@ -250,7 +240,3 @@ def _add_indicators(root: Element, component: Component) -> None:
             initial="calculated",
         )
         SubElement(structure, "EventIndicator", valueReference=str(first + k))
-
-
-def _join(references: list[int]) -> str:
-    return " ".join(map(str, references))
