@@ -83,7 +83,7 @@ def with_tolerance(algorithm: Algorithm, tolerance: float) -> Algorithm:
             f"tolerance = {tolerance:g}: {algorithm} keeps its step; only {able} adapts it, which "
             "takes parts that save and restore their state"
         )
-    if algorithm.adaptive and tolerance_of(algorithm) != tolerance:
+    if tolerance_of(algorithm) not in {None, tolerance}:
         raise ParameterError(f"tolerance = {tolerance:g}, but the algorithm is {algorithm}")
     said = f"{algorithm.name}: tolerance={{:g}};"
     check_tolerance(tolerance, said, "; leave it out for a fixed step")

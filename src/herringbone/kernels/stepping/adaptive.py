@@ -19,7 +19,7 @@ from herringbone.core.declaring.declaration import Declaration
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.signals import STRIDE, all_finite, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG, Out, Rhs, input_kernels
-from herringbone.kernels.stepping.leaping import ANEW, AT_ONCE, LATER, Leaps, no_leaps
+from herringbone.kernels.stepping.leaping import ANEW, AT_ONCE, LATER, SAME, Leaps, no_leaps
 from herringbone.kernels.stepping.local_error import Slots, error_measure, factor
 
 TOO_SMALL = 3
@@ -28,8 +28,6 @@ SMALLEST, FIRST, LARGEST = 1e-10, 2.5e-6, 1e-4
 """Inner steps [s]: the smallest, the first, the largest."""
 LONGEST_STEP = 10.0
 """Longest communication step [s] of one call: about a million inner steps."""
-_SAME = 1e-9
-"""Relative difference of lengths that are one: rounding of times."""
 _BENT = 6.0
 """Of the longest step, and the root of the tolerance: steps in which a law bends, unseen by the
 estimate; what a step errs there grows with the square of its length."""
@@ -134,7 +132,7 @@ def _interval_stepper(
     """Compile interval(b, w, t, h, begin, end, tolerance, degree, can_leap) -> int."""
     known = Slots.of(declaration.state_count).known
     leap, forget = leaps.leap, leaps.forget
-    room = shortest * (1.0 - _SAME)
+    room = shortest * (1.0 - SAME)
 
     @inner(declaration.name)
     def interval(

@@ -10,6 +10,8 @@ from herringbone.kernels.compiling.jit import inner, kernel
 AT_ONCE, LATER, ANEW = 0, 1, 2
 """How outputs are made: as they follow from the step, the same when they are asked for, or from the
 inputs of now."""
+SAME = 1e-9
+"""Relative difference of lengths that are one: rounding of times."""
 
 
 class Leaps(NamedTuple):

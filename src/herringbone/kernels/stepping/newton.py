@@ -8,6 +8,7 @@ section 3.4).
 """
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -98,6 +99,16 @@ def _largest(r: np.ndarray, rows: np.ndarray, n: int) -> float:
     return found
 
 
+class _Equations(NamedTuple):
+    """What is asked of `newton_solver`."""
+
+    residual: Callable[[np.ndarray, float, np.ndarray], None]
+    unknowns: tuple[int, ...]
+    sizes: tuple[float, ...]
+    scratch: int
+    owner: str
+
+
 def newton_solver(
     residual: Callable[[np.ndarray, float, np.ndarray], None],
     unknowns: tuple[int, ...],
@@ -119,8 +130,8 @@ def newton_solver(
     """
     n = len(unknowns)
     end = scratch + n * n
-    jacobian = _jacobian_maker(residual, unknowns, sizes, scratch, owner)
-    advance = _advancer(residual, unknowns, sizes, scratch, owner)
+    equations = _Equations(residual, unknowns, sizes, scratch, owner)
+    jacobian, advance = _jacobian_maker(equations), _advancer(equations)
 
     @inner(owner)
     def search(b: np.ndarray, t: float) -> int:
@@ -144,16 +155,10 @@ def newton_solver(
     return search
 
 
-def _jacobian_maker(
-    residual: Callable[[np.ndarray, float, np.ndarray], None],
-    unknowns: tuple[int, ...],
-    sizes: tuple[float, ...],
-    scratch: int,
-    owner: str,
-) -> Callable[[np.ndarray, float], None]:
+def _jacobian_maker(of: _Equations) -> Callable[[np.ndarray, float], None]:
     """Compile jacobian(b, t), beside the residual there; see `newton_solver`."""
-    n = len(unknowns)
-    end = scratch + n * n
+    residual, unknowns, sizes, scratch, owner = of
+    n, end = len(unknowns), scratch + len(unknowns) ** 2
 
     @inner(owner)
     def jacobian(b: np.ndarray, t: float) -> None:
@@ -177,16 +182,10 @@ def _jacobian_maker(
     return jacobian
 
 
-def _advancer(
-    residual: Callable[[np.ndarray, float, np.ndarray], None],
-    unknowns: tuple[int, ...],
-    sizes: tuple[float, ...],
-    scratch: int,
-    owner: str,
-) -> Callable[[np.ndarray, float], None]:
+def _advancer(of: _Equations) -> Callable[[np.ndarray, float], None]:
     """Compile advance(b, t), by that Jacobian; see `newton_solver`."""
-    n = len(unknowns)
-    end = scratch + n * n
+    residual, unknowns, sizes, scratch, owner = of
+    n, end = len(unknowns), scratch + len(unknowns) ** 2
 
     @inner(owner)
     def advance(b: np.ndarray, t: float) -> None:

@@ -17,7 +17,7 @@ from herringbone.kernels.condensed.in_block.places import WorkPlaces
 from herringbone.kernels.condensed.in_block.shown import ShowKernels, show_kernels, shower
 from herringbone.kernels.condensed.in_block.states import StateKernels, state_kernels
 from herringbone.kernels.condensed.modal import add_chosen, add_product
-from herringbone.kernels.stepping.leaping import Leaps
+from herringbone.kernels.stepping.leaping import SAME, Leaps
 
 _CLOSE = 10.0
 """Residual of the laws' values, over their size and the tolerance, whose correction solves a step.
@@ -30,8 +30,6 @@ fastest rate and T the period of the laws.
 At the knots of their tables they bend in a way of which a polynomial misses a share (h / T)^3, over
 a step; that moves what is faster than a step, and the more, the longer it is. Measured errors of
 rigs are 0.001 to 1.3 of the tolerance (`campaigns.condensed_steps`)."""
-_SAME = 1e-9
-"""Relative difference of lengths that are one: rounding of times."""
 
 
 def step_beginner(
@@ -145,12 +143,12 @@ def _chooser(form: Form, owner: str) -> Callable:
         longest = -1
         for rung in range(rungs):
             length = lengths[rung]
-            if length > most * (1.0 + _SAME):
+            if length > most * (1.0 + SAME):
                 continue
             if longest < 0:
                 longest = rung
             count = left / length
-            if abs(count - math.floor(count + 0.5)) <= _SAME * count:
+            if abs(count - math.floor(count + 0.5)) <= SAME * count:
                 return rung
             if length < 0.5 * most:
                 break
@@ -192,7 +190,7 @@ def leaper(
         repeat = period(b)
         longest = math.sqrt(math.sqrt(_SHARE * tolerance * repeat / w[at.fastest]) * repeat)
         longest = min(lengths[0], longest)
-        if end - done < shortest * (1.0 - _SAME) or longest < shortest:
+        if end - done < shortest * (1.0 - SAME) or longest < shortest:
             return done
         prepare(b)
         enter(b, w, t + done, _CLOSE * tolerance)
@@ -216,7 +214,7 @@ def leaper(
             done += length
         if done > begin:
             leave(b, w)
-        return end if end - done < shortest * _SAME else done
+        return end if end - done < shortest * SAME else done
 
     show = shower(form, at, equations, core.states.settle, core.shown.everything)
     return Leaps(leap, core.ready, core.states.forget, show)
