@@ -10,14 +10,14 @@ from herringbone.core.part import Part
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
 from herringbone.cosim.energy.watch import EnergyWatch
-from herringbone.cosim.initialisation import initialise
 from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.run import Progress, Run
-from herringbone.cosim.start_speeds import unlike_inside, unlike_speeds
-from herringbone.cosim.start_values import start_offsets
+from herringbone.cosim.starting.initialisation import initialise
+from herringbone.cosim.starting.speeds import unlike_inside, unlike_speeds
+from herringbone.cosim.starting.values import start_offsets
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.transport import settle_derivatives

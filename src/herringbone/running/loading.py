@@ -14,10 +14,10 @@ from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.declaring.roles import Role
 from herringbone.core.part import STRUCTURE, Part, PartVariable
 from herringbone.core.places.files import as_texts, beside, is_file, same_folder
-from herringbone.cosim.approached_part import approached
 from herringbone.cosim.fmu.file import require_file
 from herringbone.cosim.fmu.opening import many_of, open_fmu, runs_again
 from herringbone.cosim.ssp.format import is_ssp
+from herringbone.cosim.starting.approached_part import approached
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.cosim.units import in_si_units

@@ -7,7 +7,7 @@ import pytest
 from support.parts.fakes import FakePart
 
 import herringbone as hb
-from herringbone.cosim.start_speeds import unlike_inside
+from herringbone.cosim.starting.speeds import unlike_inside
 from herringbone.cosim.structure.system import PartSpec, System
 
 STIFFNESS, DAMPING = 1e4, 5.0

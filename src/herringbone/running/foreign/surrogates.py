@@ -17,12 +17,12 @@ from herringbone.core import FmuError, HerringboneError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.adapter import WithoutStates
-from herringbone.cosim.approached_part import approached
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Kind, Laboratory, Signature
 from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.trial import Refused
+from herringbone.cosim.starting.approached_part import approached
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System

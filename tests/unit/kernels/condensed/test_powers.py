@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from herringbone.kernels.condensed.in_block.of_mode import powers
+from herringbone.kernels.condensed.in_block.condensing.of_mode import powers
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(60)
 

@@ -22,7 +22,7 @@ from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.declaring.hosting import FAILS_STEPS, HOLDS_NOW
 from herringbone.kernels import steppers
 from herringbone.kernels.compiling.jit import inner
-from herringbone.kernels.condensed.in_block.condense import FOUND
+from herringbone.kernels.condensed.in_block.condensing.condense import FOUND
 from herringbone.kernels.condensed.in_block.form import Form
 from herringbone.kernels.condensed.in_block.leaps import core_kernels, leaper
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, kept_size, work_places

@@ -10,7 +10,7 @@ from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.compiling.views import integers, matrix
 from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.in_block.collocated import advancing, doubts, iteration
-from herringbone.kernels.condensed.in_block.condense import FOUND, condenser
+from herringbone.kernels.condensed.in_block.condensing.condense import FOUND, condenser
 from herringbone.kernels.condensed.in_block.coordinates import enterer
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces

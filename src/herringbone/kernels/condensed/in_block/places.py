@@ -44,7 +44,7 @@ class WorkPlaces(NamedTuple):
             a rung is made.
         full_inputs: (channels x nodes, (nodes - 1) x arguments): the same of the inputs.
         seen: (2 modes + rotations + channels, states inside and outputs, in whole lines), see
-            `in_block.seen`.
+            `in_block.condensing.seen`.
         bent: (outputs,) 1 where one is not affine.
         asked: (outputs and states,) rows of `seen` that were asked for, in this order.
         known: (outputs and states,) 1 for these.

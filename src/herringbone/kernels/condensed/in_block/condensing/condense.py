@@ -6,13 +6,13 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.kernels.compiling.jit import outside
-from herringbone.kernels.condensed.in_block.apart import apart_taker
-from herringbone.kernels.condensed.in_block.check import checker
+from herringbone.kernels.condensed.in_block.condensing.apart import apart_taker
+from herringbone.kernels.condensed.in_block.condensing.check import checker
+from herringbone.kernels.condensed.in_block.condensing.in_modes import mode_arranger, mode_finder
+from herringbone.kernels.condensed.in_block.condensing.rung import rung_maker
+from herringbone.kernels.condensed.in_block.condensing.seen import seen_arranger
 from herringbone.kernels.condensed.in_block.form import Equations, Form
-from herringbone.kernels.condensed.in_block.in_modes import mode_arranger, mode_finder
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
-from herringbone.kernels.condensed.in_block.rung import rung_maker
-from herringbone.kernels.condensed.in_block.seen import seen_arranger
 
 FOUND, NONE = 1, -1
 """Status: there is a condensed form, or none."""

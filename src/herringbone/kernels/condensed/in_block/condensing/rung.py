@@ -8,12 +8,12 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.kernels.compiling.jit import outside
-from herringbone.kernels.condensed.in_block.form import Form
-from herringbone.kernels.condensed.in_block.of_mode import (
+from herringbone.kernels.condensed.in_block.condensing.of_mode import (
     channel_adder,
     start_adder,
     weight_writer,
 )
+from herringbone.kernels.condensed.in_block.form import Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
 
 

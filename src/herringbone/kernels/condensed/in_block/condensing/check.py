@@ -8,7 +8,11 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.kernels.compiling.jit import outside
-from herringbone.kernels.condensed.in_block.bent import LONG_AFTER, bent_finder, channel_writer
+from herringbone.kernels.condensed.in_block.condensing.bent import (
+    LONG_AFTER,
+    bent_finder,
+    channel_writer,
+)
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import (
     WorkPlaces,

@@ -8,9 +8,9 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.kernels.compiling.jit import outside
+from herringbone.kernels.condensed.in_block.condensing.rotations import rotation_finder
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_places
-from herringbone.kernels.condensed.in_block.rotations import rotation_finder
 
 
 def apart_taker(

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from herringbone.core.part import Part
-from herringbone.cosim.approached_part import ApproachedPart
+from herringbone.cosim.starting.approached_part import ApproachedPart
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
 
