@@ -1,4 +1,4 @@
-"""The test rig as one component, whose step takes ten seconds to compile: once a process."""
+"""The test rig as one component, whose step takes ten seconds to compile, and is kept."""
 
 from functools import cache
 

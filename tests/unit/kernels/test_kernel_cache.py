@@ -51,6 +51,21 @@ def factory(factor: float):
 
     return scaled
 """
+KEPT = """
+from herringbone.kernels.compiling.jit import inner, inner_kept
+
+
+def factory(factor: float):
+    @inner("same")
+    def added(x: float) -> float:
+        return x + factor
+
+    @inner_kept("same", f"{factor}")
+    def scaled(x: float) -> float:
+        return factor * added(x)
+
+    return scaled
+"""
 CALLER = """
 from closures import factory
 from herringbone.kernels.compiling.jit import kernel
@@ -282,3 +297,16 @@ def test_a_generated_module_depends_on_what_those_import_that_it_imports(tmp_pat
     found = key("herringbone.kernels.elementary")
     assert key("herringbone.kernels.derivatives.dual_expressions") != found
     assert key("herringbone.kernels.elementary") == found
+
+
+def test_what_a_factory_makes_is_kept_by_what_it_was_given(tmp_path):
+    """In another process, too; there is no other kernel of the same name beside it."""
+    (tmp_path / "kept.py").write_text(KEPT)
+    code = (
+        "from kept import factory\n"
+        "made = [factory(2.0), factory(3.0)]\n"
+        "print([kernel(1.0) for kernel in made], factory(3.0) is made[1],\n"
+        "      [sum(kernel.stats.cache_hits.values()) for kernel in made])"
+    )
+    found = [in_process(tmp_path, code, tmp_path / "cache") for _ in range(2)]
+    assert found == ["[6.0, 12.0] True [0, 0]", "[6.0, 12.0] True [1, 1]"]

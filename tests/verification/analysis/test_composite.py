@@ -49,6 +49,21 @@ def test_what_steps_are_compiled_with_is_in_their_source(composite):
     modules = [sys.modules[c.component.kernels.rhs.py_func.__module__] for c in (composite, finer)]
     room = np.zeros(composite.component.declaration.work)  # without a condensed form
     assert [m.longest_inner_step(room, room) for m in modules] == [2.5e-6, 1e-6]
+    assert finer.component.kernels.step is not composite.component.kernels.step
+
+
+def test_a_step_is_compiled_once_for_all_operating_points(composite):
+    """Not for another damping of the meshes, which is compiled in."""
+    same, other = (
+        make_composite(prepared("test_rig", "loaded", Wishes(values=values)).system)
+        for values in (
+            {"bench_controller.speed_factor": 1.3, "bench_controller.torque_factor": 0.7},
+            {"gearbox.gear_mesh.mesh_damping_ratio": 0.05},
+        )
+    )
+    step = composite.component.kernels.step
+    assert same.component.kernels.step is step
+    assert other.component.kernels.step is not step
 
 
 def test_it_moves_as_the_twin_does(rig, composite, tmp_path):

@@ -4,6 +4,7 @@
 |---|---|
 | kernel, piece | syntax of its module and of all modules of the package that this one imports |
 | generated module | its text; as a kernel's source it is a module like others |
+| step of a system | as of a kernel, of the factory and of its generated module; layout and form |
 | object code of a component or system | syntax of its modules and of the compiler; the wiring |
 | native library | its object code, the C sources, its description in C, which has `sources_key` |
 | FMU | `packed_key`, its resources; a native one: its library |

@@ -25,6 +25,7 @@ from numba.core.caching import (
     IndexDataCacheFile,
     _CacheLocator,
 )
+from numba.core.codegen import JITCPUCodegen
 from numba.core.compiler import CompileResult
 from numba.core.cpu import CPUContext
 from numba.core.typing import Signature
@@ -166,7 +167,15 @@ class KernelCache(FunctionCache):
             self.flush()
 
 
-def cached(compiled: D, function: Callable) -> D:
+class NamedCache(KernelCache):
+    """The cache of a kernel whose name tells all that its factory was given."""
+
+    def _index_key(self, sig: Signature, codegen: JITCPUCodegen) -> tuple:
+        """numba would ask closures for bytes, in which kernels have numbers of the process."""
+        return sig, codegen.magic_tuple()
+
+
+def cached(compiled: D, function: Callable, kind: type[KernelCache] = KernelCache) -> D:
     """Let a dispatcher or C callback of numba cache what it compiles of a function."""
-    compiled._cache = KernelCache(function)  # type: ignore[attr-defined]  # of both kinds
+    compiled._cache = kind(function)  # type: ignore[attr-defined]  # of both kinds
     return compiled

@@ -2,13 +2,14 @@
 
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
+from weakref import WeakValueDictionary
 
 from numba import types
 from numba.core.sigutils import normalize_signature
 from numba.extending import intrinsic
 
 from herringbone.kernels.compiling import constants, elements  # noqa: F401 (register themselves)
-from herringbone.kernels.compiling.cache import cached
+from herringbone.kernels.compiling.cache import NamedCache, cached
 from herringbone.kernels.compiling.kept_pieces import kept
 from herringbone.kernels.compiling.linking import (
     HOT,
@@ -25,6 +26,8 @@ T = TypeVar("T")
 _C_OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy"}
 _OPTIONS = {**_C_OPTIONS, "fastmath": False, "nogil": True, "forceinline": False}
 """numba takes what is not set from whoever is being compiled: code would go by who calls first."""
+_by_content: "WeakValueDictionary[str, KernelDispatcher]" = WeakValueDictionary()
+"""Kernels of `inner_kept`, by name: two that are loaded at a time would share one's code."""
 
 
 def kernel(function: Callable[P, T]) -> Callable[P, T]:
@@ -89,6 +92,28 @@ def inner(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
         function.__qualname__ = f"{owner}.{function.__qualname__}"
         return KernelDispatcher(function, {**_OPTIONS, "_nrt": False})
+
+    return decorate
+
+
+def inner_kept(owner: str, content: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """As `inner`, for a function that is called from Python, and cached.
+
+    Args:
+        owner: see `inner`.
+        content: digest of all that the factory was given, and of what that is compiled from. It
+            becomes part of the name: code of the same name is the same in all processes, and is
+            there once in each.
+    """
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        name = f"{owner}.{content}.{function.__qualname__}"
+        found = _by_content.get(name)
+        if found is None:
+            function.__qualname__ = name
+            found = KernelDispatcher(function, {**_OPTIONS, "_nrt": False})
+            _by_content[name] = cached(found, function, NamedCache)
+        return found
 
     return decorate
 

@@ -1,5 +1,6 @@
 """Steps of a system as one component that follow a tolerance: condensed core, and Runge-Kutta."""
 
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -8,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.twin.block_core.content import content_of
 from herringbone.analysis.twin.block_core.form import equations_of
 from herringbone.core import (
     Asked,
@@ -21,7 +23,7 @@ from herringbone.core import (
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.declaring.hosting import FAILS_STEPS, HOLDS_NOW
 from herringbone.kernels import steppers
-from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.jit import inner, inner_kept
 from herringbone.kernels.condensed.in_block.condensing.condense import FOUND
 from herringbone.kernels.condensed.in_block.form import Form
 from herringbone.kernels.condensed.in_block.leaps import core_kernels, leaper
@@ -172,7 +174,7 @@ def step_kernel(
     fixed = steppers.body_stepper(module.system_rhs, module.system_out, d)
     micro_at, tolerance, degree = d.indices(micro_step, TOLERANCE, INTERFACE_DEGREE)
 
-    def stepper(*, later: bool) -> Callable:
+    def stepper(decorate: Callable, *, later: bool) -> Callable:
         by_core = adaptive_stepper(
             module.system_rhs,
             module.system_out,
@@ -184,7 +186,7 @@ def step_kernel(
             later=later,
         )
 
-        @inner(d.name)
+        @decorate
         def step(b, w, t, h):  # noqa: ANN001, ANN202 (the contract of all steps)
             if w[at.status] == 0.0:  # parameters may have changed
                 refresh(b)
@@ -210,4 +212,6 @@ def step_kernel(
         else:
             everything(b, w, t)
 
-    return stepper(later=False), Asked(stepper(later=True), answer, kept + STALE)
+    content = content_of(d, module, found, sys.modules[__name__])
+    own = stepper(inner_kept(d.name, content), later=False)
+    return own, Asked(stepper(inner(d.name), later=True), answer, kept + STALE)
