@@ -17,6 +17,7 @@ from herringbone.core.places.paths import cache_root
 
 _PATIENCE = 2.0
 """Seconds for which nothing need be said."""
+_MINUTE = 60.0
 _AGAIN = 4.0
 """What is done in many pieces says how far it is whenever its time is so many times longer."""
 
@@ -199,3 +200,12 @@ def activity(what: str, note: str = "", *, shown: bool = False) -> Iterator[None
 def tell(line: str) -> None:
     """Say at once what the user should know before something takes long."""
     _LOG.info("%s", line)
+
+
+def lasting(seconds: float) -> str:
+    """A duration with the unit that reads best."""
+    if seconds < _MINUTE:
+        return f"{seconds:.2g} s"
+    if seconds < _MINUTE * _MINUTE:
+        return f"{seconds / _MINUTE:.2g} min"
+    return f"{seconds / _MINUTE / _MINUTE:.3g} h"

@@ -7,6 +7,7 @@ from pathlib import Path
 from statistics import median
 
 from herringbone.core import ParameterError
+from herringbone.core.activity import lasting
 from herringbone.result.folder.typed import as_json
 from herringbone.studies.evaluators.levels import PERIOD
 from herringbone.studies.working.chain import Done
@@ -14,7 +15,6 @@ from herringbone.studies.working.chain import Done
 _MEBIBYTE = 2.0**20
 _DIGITS = 20
 """Bytes of a number in a table of text."""
-_MINUTE = 60.0
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Expected:
         known = f", of which {there} are there" if there else ""
         return (
             f"{_counted(self.points, 'point')} in {_counted(self.chains, 'chain')}{known}; about "
-            f"{_duration(self.cpu)} of CPU time, {self.size / _MEBIBYTE:.2g} MiB"
+            f"{lasting(self.cpu)} of CPU time, {self.size / _MEBIBYTE:.2g} MiB"
         )
 
 
@@ -82,11 +82,3 @@ def _size(done: Done) -> float:
     table = sum(_DIGITS * (len(row.figures) + 2) + len(row.message) for row in done.rows)
     series = sum(result.data.size * 8.0 for result in done.series.values())
     return chain + table + series
-
-
-def _duration(seconds: float) -> str:
-    if seconds < _MINUTE:
-        return f"{seconds:.2g} s"
-    if seconds < _MINUTE * _MINUTE:
-        return f"{seconds / _MINUTE:.2g} min"
-    return f"{seconds / _MINUTE / _MINUTE:.3g} h"

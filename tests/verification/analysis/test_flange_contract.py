@@ -1,16 +1,20 @@
 """The contract of flanges: what is right holds it, and each fault is named by its test."""
 
 import json
+import re
+from collections import Counter
 
 import pytest
 from support.c_flange import c_flange
 
 from herringbone.analysis.finding import Verdict, judged
-from herringbone.analysis.flange import contract, work
+from herringbone.analysis.flange import contract, extent, work
 from herringbone.analysis.flange.contract import check_flanges
 from herringbone.commands import main as cli
 from herringbone.core.declaring.roles import Role
 from herringbone.cosim.fmu.opening import many_of
+from herringbone.cosim.signature import cost
+from herringbone.cosim.signature.trial import Trial
 
 STEP = 1e-4
 ROLE = {
@@ -51,6 +55,9 @@ MUTANTS = {
     ("BAR", "NO_REACTION"): ("action = reaction", "off by 10 %"),
 }
 """Test and words that name the fault of a part."""
+
+
+SPUN, BALANCED = "the angle over turns", "action = reaction and relative motion"
 
 
 @pytest.fixture(autouse=True)
@@ -114,6 +121,59 @@ def test_steps_that_cannot_vary(tmp_path):
     assert failing(found) == ["w = dphi/dt"]
     untested = {f.test for f in found if f.verdict is Verdict.NOT_TESTED}
     assert untested == {"no delay", "H-term"}
+
+
+@pytest.mark.parametrize("part", ["ROTOR", "SHAFT", "BAR"])
+@pytest.mark.parametrize("longest", [None, 400])
+def test_steps_are_counted_before(monkeypatch, caplog, tmp_path, part, longest):
+    """Within 15 %: notes of what a slow part costs, for the tests and for what it is, are true."""
+    taken = Counter()
+    doing = "start"
+
+    def counted(trial, h, step=Trial.step):
+        taken[doing] += 1
+        step(trial, h)
+
+    def begins(what):
+        nonlocal doing
+        doing = "what it is" if what == "what it is" else "tests"
+
+    monkeypatch.setattr(Trial, "step", counted)
+    for module in (cost, extent):
+        monkeypatch.setattr(module, "PATIENCE", 0.0)
+    fmu = c_flange(tmp_path, part)
+    findings(fmu, ROLE.get(part, Role.LOAD), longest=longest, progress=begins)
+    told = [int(number) for number in re.findall(r"takes? about (\d+) steps", caplog.text)]
+    assert told == pytest.approx([taken["what it is"], taken["tests"]], rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("part", "longest", "lacking"),
+    [
+        ("ROTOR", 3200, ["passivity below 15.6 Hz"]),
+        ("SHAFT", 800, ["passivity below 100 Hz", "the H-term after longer turns", SPUN]),
+        ("BAR", 100, ["passivity", "the H-term after longer turns", BALANCED, SPUN]),
+    ],
+)
+def test_short_trials_leave_out_what_takes_longer(monkeypatch, tmp_path, part, longest, lacking):
+    """What is told beforehand is what findings say; the rest holds as always, on any machine."""
+    said = []
+
+    def told(bench, name):
+        said.extend(extent.left_out(bench, bench.longest))
+
+    monkeypatch.setattr(contract, "tell_cost", told)
+    found = findings(c_flange(tmp_path, part), ROLE.get(part, Role.LOAD), longest=longest)
+    assert said == lacking
+    assert failing(found) == []
+    text = {f.test: f.measured for f in found}
+    assert ("nothing is known below" in text["passivity"]) == ("below" in lacking[0])
+    short = {f.test for f in found if f"{longest} are allowed" in f.measured}
+    assert ("passivity" in short) == (lacking[0] == "passivity")
+    assert any("angle over turns" in test for test in short) == (SPUN in lacking)
+    assert ("action = reaction" in short) == (BALANCED in lacking)
+    turned = any("longer turns are not tested" in shown for shown in text.values())
+    assert turned == ("the H-term after longer turns" in lacking)
 
 
 def test_what_fails_once_only_is_a_remark(monkeypatch, tmp_path):
@@ -240,6 +300,8 @@ def test_wrong_options(capsys, tmp_path):
     fmu = str(c_flange(tmp_path, "SHAFT"))
     for options, words in (
         (["--flange", "x"], "--flange belongs to the test of a motor, load or coupling"),
+        (["--longest-trial", "9"], "--longest-trial belongs to the test of a role"),
+        (["--as", "load", "--longest-trial", "0"], "--longest-trial 0: it must be 1 at least"),
         (["--json"], "--json belongs to the test of a role"),
         (["--as", "load", "--flange", "torque=x"], "write a port's name, or tau=NAME"),
     ):

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from support.parts.fakes import OK, CallbackPart
 
+from herringbone.analysis.finding import Verdict
 from herringbone.analysis.housing import behaviour as housing_behaviour
-from herringbone.analysis.housing.behaviour import FORCES, POSITIONS, VELOCITIES, least_work
+from herringbone.analysis.housing import runs as housing_runs
+from herringbone.analysis.housing.behaviour import least_work, steps_of_tests
 from herringbone.analysis.housing.contract import STEP, check_housing
+from herringbone.analysis.housing.runs import FORCES, POSITIONS, VELOCITIES
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.core import Instance, ParameterError
@@ -197,6 +200,29 @@ def test_no_damping_is_a_remark(monkeypatch):
         (remark,) = (f for f in check_housing(kind) if f.test == "damping")
         assert remark.holds
         assert ("next to no damping" in remark.measured) == said
+
+
+def test_a_slow_housing_is_told_and_tested_in_short_runs(monkeypatch, caplog):
+    """Steps are told as they are taken, but for the few before; what takes longer is left out."""
+    monkeypatch.setattr(housing_behaviour, "_SETTLING", 900)
+    monkeypatch.setattr(housing_runs, "PATIENCE", 0.0)
+    taken = 0
+
+    class Counted(Seats):
+        def step(self, t, h):
+            nonlocal taken
+            taken += 1
+            return super().step(t, h)
+
+    assert all(finding.holds for finding in check_housing(Counted))
+    assert f"take {steps_of_tests()} steps" in caplog.text
+    assert taken == steps_of_tests() + 4
+    taken = 0
+    found = check_housing(Counted, longest=housing_behaviour.SHORT)
+    untested = {f.test for f in found if f.verdict is Verdict.NOT_TESTED}
+    waiting = {"static compliance", "compliance", "reciprocity", "superposition", "damping"}
+    assert untested == waiting
+    assert taken == 25 * 400 + 4
 
 
 def test_missing_and_wrong_variables(monkeypatch):

@@ -6,7 +6,6 @@ start or that at the end, of a speed and of a torque the mean. Outputs are y + D
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from time import perf_counter
 
 import numpy as np
 
@@ -14,11 +13,11 @@ from herringbone.analysis.flange.variables import Flange
 from herringbone.core import FmuError
 from herringbone.cosim.signature import Laboratory, Signature
 from herringbone.cosim.signature.rotation import InputRule
+from herringbone.cosim.signature.trial import Refused
 
 Signal = Callable[[np.ndarray], np.ndarray]
 """An angle [rad], or a torque [N m], over time [s] since the start."""
 _SIMPSON = (1.0, 4.0, 1.0)
-_TIMED = 20
 _FASTEST = 1e5
 """Speeds [rad/s] beyond which the torque's rise does not tell the own speed."""
 
@@ -57,11 +56,11 @@ class Bench:
         lab: entered.
         signature: of the part, found there.
         flanges: of the part.
+        longest: steps that a run may have.
         steps_vary: False if the part declares that all its steps have one length.
 
     Attributes:
         step: of the laboratory [s].
-        seconds: that a step takes [s].
         own_speed: for each flange that takes motion the speed [rad/s] at which it turns.
     """
 
@@ -70,20 +69,18 @@ class Bench:
         lab: Laboratory,
         signature: Signature,
         flanges: Sequence[Flange],
+        longest: int,
         *,
         steps_vary: bool = True,
     ) -> None:
         self.lab, self.signature, self.flanges = lab, signature, tuple(flanges)
-        self.step, self.steps_vary = lab.step, steps_vary
+        self.step, self.longest, self.steps_vary = lab.step, longest, steps_vary
         factors = {f.variable(q): k for f in flanges for q, k in f.factors.items()}
         self._in = np.array([factors.get(name, 1.0) for name in signature.inputs])
         self._out = np.array([factors.get(name, 1.0) for name in signature.outputs])
         self.feedthrough = signature.feedthrough * self._out[:, None] / self._in
         self._rest: Record | None = None
         self.own_speed: dict[str, float] = {}
-        begun = perf_counter()
-        lab.run([lab.start] * _TIMED, lab.step)
-        self.seconds = (perf_counter() - begun) / _TIMED
         self.own_speed = {flange.name: self._own_speed(flange) for flange in flanges}
 
     def passes(self, flange: Flange, output: str, quantity: str) -> float:
@@ -113,7 +110,7 @@ class Bench:
         given = list(self.signature.given)
         given[self.signature.inputs.index(flange.phi)] = rule
         signature = replace(self.signature, given=tuple(given))
-        return Bench(self.lab, signature, self.flanges, steps_vary=self.steps_vary)
+        return Bench(self.lab, signature, self.flanges, self.longest, steps_vary=self.steps_vary)
 
     def at_rest(self, steps: int) -> Record:
         """A run at the own speed, under the start torque; the longest one so far is kept."""
@@ -133,9 +130,11 @@ class Bench:
         """A run under signals, by the names of flanges, beside the own motion.
 
         Raises:
-            Refused: the part refuses a step.
+            Refused: the part refuses a step, or the run would have too many.
             Diverged: its outputs do not stay finite.
         """
+        if steps > self.longest:
+            raise Refused(f"it takes a run of {steps} steps, {self.longest} are allowed")
         h = self.step if h is None else h
         t = h * np.arange(steps + 1)
         start = self.lab.start * self._in

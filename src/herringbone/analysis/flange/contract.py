@@ -14,6 +14,7 @@ import numpy as np
 from herringbone.analysis.finding import Finding, Report, Verdict, judged, not_tested, remark
 from herringbone.analysis.flange.answers import delay, feedthrough, sign
 from herringbone.analysis.flange.bench import Bench, Diverged
+from herringbone.analysis.flange.extent import longest_of, tell_cost
 from herringbone.analysis.flange.rates import rate, turns
 from herringbone.analysis.flange.reaction import reaction, relative
 from herringbone.analysis.flange.rotation import rotation
@@ -23,7 +24,7 @@ from herringbone.core import FmuError
 from herringbone.core.declaring.roles import Role
 from herringbone.core.part import Part, is_signal_node
 from herringbone.cosim.fmu.opening import has_further
-from herringbone.cosim.signature import Kind, Laboratory, Signature, find_signature
+from herringbone.cosim.signature import Kind, Laboratory, Signature, cost, find_signature
 from herringbone.cosim.signature.trial import Refused
 
 FLANGES = {Role.DRIVE: 1, Role.LOAD: 1, Role.COUPLING: 2}
@@ -50,6 +51,7 @@ def check_flanges(
     *,
     step: float,
     flanges: Sequence[str] = (),
+    longest: int | None = None,
     progress: Report = lambda what: None,
 ) -> list[Finding]:
     """Test a part against the contract of a role.
@@ -59,6 +61,7 @@ def check_flanges(
         role: one of FLANGES.
         step: of the trials [s].
         flanges: which variables they are: `port`, or `tau=name,phi=name,w=name`; empty: guessed.
+        longest: steps that a trial may have, see `extent`; as many as the tests want if None.
         progress: called with what begins.
 
     Returns:
@@ -84,12 +87,16 @@ def check_flanges(
     try:
         with Laboratory(make, inputs, outputs, start, step) as lab:
             progress("what it is")
+            cost.tell_cost(lab, part.name)
             signature = find_signature(lab, part.variables)
             findings.append(_repeats(signature))
             why = _impossible(signature, found)
             if why:
                 return [*findings, *_nothing(why, role)]
-            bench = Bench(lab, signature, found, steps_vary=not part.one_step)
+            bench = Bench(
+                lab, signature, found, longest or longest_of(), steps_vary=not part.one_step
+            )
+            tell_cost(bench, part.name)
             return [*findings, *_behaviour(bench, progress)]
     except Refused as error:
         return [*findings, *_nothing(str(error), role)]

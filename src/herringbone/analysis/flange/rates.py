@@ -25,10 +25,10 @@ LAG = 0.6
 """Steps; a part that takes one step of Euler's rule in each is off by half of one."""
 RESIDUAL = 0.02
 HINT = 0.05
-_EVERY = 3
+EVERY = 3
 """Of the periods of the test of passivity one in so many is taken."""
 _TURNS = 1.5
-_SPIN = 1000
+SPIN = 1000
 """Steps in which a body is turned by that many turns."""
 _MOST = 1e6
 """Torque [N m] beyond which it is not tried."""
@@ -50,7 +50,7 @@ def rate(bench: Bench, flange: Flange) -> Finding:
 def _of_body(bench: Bench, flange: Flange) -> Finding:
     limit = f"r = 1 +- {RATIO:g}, lag {LAG:g} step"
     phi, integral, speed = [], [], []
-    for period in periods(bench)[::_EVERY]:
+    for period in reversed(periods(bench)[::EVERY]):  # the longest run at rest is kept
         size = TORQUE if period < 100 else 0.1 * TORQUE
         signal = burst(size, period * bench.step, CYCLES)
         apart = bench.change({flange.name: signal}, CYCLES * period)
@@ -135,7 +135,7 @@ def turns(bench: Bench, flange: Flange) -> Finding:
     if not 0.0 < torque < _MOST:
         return not_tested(test, f"{TORQUE:g} N m hardly turns it")
     try:
-        found = bench.run({flange.name: constant(torque)}, _SPIN)
+        found = bench.run({flange.name: constant(torque)}, SPIN)
     except Refused as error:
         return not_tested(test, str(error))
     angle, w = found.of(flange.phi), found.of(flange.w)
@@ -155,9 +155,9 @@ def _turned(bench: Bench, flange: Flange, test: str) -> Finding:
     stiffness = abs(bench.passes(flange, flange.tau, "phi"))
     if not stiffness or not np.isfinite(stiffness):
         return not_tested(test, "its torque does not follow the angle directly")
-    signal = turn(_FULL * _TURNS, _SPIN * bench.step)
+    signal = turn(_FULL * _TURNS, SPIN * bench.step)
     signals = {f.name: signal for f in bench.flanges if not f.takes_torque}
-    steps = np.abs(np.diff(bench.change(signals, _SPIN).of(flange.tau)))
+    steps = np.abs(np.diff(bench.change(signals, SPIN).of(flange.tau)))
     beside = np.maximum(steps[:-2], steps[2:])
     alone = np.where(steps[1:-1] > _ALONE * beside, steps[1:-1], 0.0)
     share = float(alone.max()) / (stiffness * _FULL)
@@ -169,6 +169,6 @@ def _torque_for_turns(bench: Bench, flange: Flange) -> float:
     """Torque [N m] that turns a free body by the turns of the test."""
     few = 4
     speed = bench.change({flange.name: constant(TORQUE)}, few).of(flange.w)[-1]
-    seconds = _SPIN * bench.step
+    seconds = SPIN * bench.step
     needed = 2.0 * _FULL * _TURNS / seconds**2
     return float(TORQUE * needed * few * bench.step / abs(speed)) if speed else 0.0

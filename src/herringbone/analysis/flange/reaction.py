@@ -21,6 +21,8 @@ AT_ONCE = 1e-6
 TURN, HOLD = 100, 2000
 """Steps in which a flange is turned, and then held."""
 _PERIOD = 160
+RUNS = 3
+"""Held runs of both tests of a coupling with a mass inside, the one at rest counted."""
 
 
 def reaction(bench: Bench) -> Finding:

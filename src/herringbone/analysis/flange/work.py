@@ -18,10 +18,10 @@ from herringbone.analysis.flange.answers import TORQUE
 from herringbone.analysis.flange.bench import Bench, Record, Signal
 from herringbone.analysis.flange.motions import burst
 from herringbone.analysis.flange.variables import Flange
+from herringbone.cosim.signature.trial import Refused
 
 PERIODS = (40, 64, 100, 160, 250, 400, 640, 1000, 1600, 2560)
 """Of the oscillations, in steps; close together, as a late control is active in a band only."""
-_FEWEST = 3
 CYCLES = 4
 _WINDOW = 0.375
 """Mean square of a Hann window."""
@@ -33,17 +33,25 @@ LAG = 0.6
 """Lag, in steps, that is allowed besides: Euler's rule is half a step late."""
 EULER = 0.05
 """Negative damping over stiffness times step that is allowed, too: Euler's rule in fine steps."""
-_PATIENCE = 6.0
-"""Time [s] that the steps of the test may take."""
+
+
+def kept(longest: int) -> tuple[int, ...]:
+    """Those periods whose oscillations fit into runs of so many steps."""
+    return tuple(period for period in PERIODS if CYCLES * period <= longest)
 
 
 def periods(bench: Bench) -> tuple[int, ...]:
-    """Those periods that steps are quick enough for; the longest ones go first."""
-    records = 1 if len(bench.flanges) == 1 else 4
-    kept = len(PERIODS)
-    while kept > _FEWEST and CYCLES * sum(PERIODS[:kept]) * records * bench.seconds > _PATIENCE:
-        kept -= 1
-    return PERIODS[:kept]
+    """Those periods that the bench allows; raises Refused if it allows none."""
+    found = kept(bench.longest)
+    if not found:
+        least = CYCLES * PERIODS[0]
+        raise Refused(f"it takes a run of {least} steps, {bench.longest} are allowed")
+    return found
+
+
+def records(flanges: int) -> int:
+    """Oscillations of each period: of each flange, and two of each pair of flanges."""
+    return flanges + 2 * (flanges - 1)
 
 
 def _band(bench: Bench) -> str:
@@ -53,7 +61,10 @@ def _band(bench: Bench) -> str:
 
 
 def passivity(bench: Bench) -> Finding:
-    """No oscillation gets work out of any flange, nor of two that move a quarter period apart."""
+    """No oscillation gets work out of any flange, nor of two that move a quarter period apart.
+
+    Raises Refused.
+    """
     test = "passivity"
     if not _known(bench):
         return not_tested(test, "its feedthrough is not known")
@@ -70,6 +81,8 @@ def passivity(bench: Bench) -> Finding:
     shown = (
         "no negative work" if loss >= 0.0 else f"loss angle {loss:.2g} rad at {frequency:.3g} Hz"
     )
+    if len(periods(bench)) < len(PERIODS):
+        shown += f"; nothing is known below {1.0 / (periods(bench)[-1] * bench.step):.3g} Hz"
     allowed = f"-{LOSS:g} rad - {LAG:g} step - {EULER:g} k H, {_band(bench)}"
     return judged(test, relative >= -1.0, shown, allowed)
 

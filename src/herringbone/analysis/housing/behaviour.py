@@ -10,19 +10,15 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.analysis.finding import Finding, judged, remark
-from herringbone.core.declaring.roles import HALVES
-from herringbone.core.part import Part
-from herringbone.cosim.loops.drive import drive
+from herringbone.analysis.housing.runs import FORCES, POSITIONS, VELOCITIES, Runs
 
 RECORDS = 20
 """Random force records of the test of passivity."""
-_AXES = "xyz"
-FORCES = tuple(f"{seat}.f_{axis}" for seat in HALVES for axis in _AXES)
-POSITIONS = tuple(f"{seat}.s_{axis}" for seat in HALVES for axis in _AXES)
-VELOCITIES = tuple(f"{seat}.v_{axis}" for seat in HALVES for axis in _AXES)
 _FORCE = 1000.0
 _SETTLING, _RECORD = 2500, 400
 """Steps of a step response and of a random record."""
+SHORT = 2 * _RECORD
+"""Steps of the longest run besides those that wait for a housing to settle."""
 _BAND_HZ = (50.0, 2000.0)
 _SINES = 6
 
@@ -45,43 +41,30 @@ FEEDTHROUGH_RATIO = 0.75
 
 
 class Behaviour:
-    """The tests; responses to single forces are computed once.
+    """The tests; responses to single forces are computed once. All raise Refused.
 
     Args:
-        open_part: makes a new instance, not yet initialised.
-        step: communication step size [s].
+        runs: of the housing.
     """
 
-    def __init__(self, open_part: Callable[[], Part], step: float) -> None:
-        self._open, self._step = open_part, step
+    def __init__(self, runs: Runs) -> None:
+        self._runs, self._step = runs, runs.step
         self._responses: np.ndarray | None = None
-
-    def _run(self, forces: np.ndarray, step: float | None = None) -> np.ndarray:
-        """Positions (n + 1, 12) under forces (n, 12)."""
-        return self._outputs(forces, POSITIONS, step or self._step)
-
-    def _outputs(self, forces: np.ndarray, names: tuple[str, ...], step: float) -> np.ndarray:
-        part = self._open()
-        try:
-            part.enter_initialization(0.0, (len(forces) + 1) * step)
-            part.exit_initialization()
-            return drive(part, FORCES, forces, names, step)
-        finally:
-            part.close()
 
     @property
     def _unit_responses(self) -> np.ndarray:
         """(12, n + 1, 12): positions after a step of 1 N at each force."""
         if self._responses is None:
             eye = _FORCE * np.eye(len(FORCES))
-            runs = [self._run(np.tile(force, (_SETTLING, 1))) for force in eye]
+            runs = [self._runs.positions(np.tile(force, (_SETTLING, 1))) for force in eye]
             self._responses = np.array(runs) / _FORCE
         return self._responses
 
     def feedthrough(self) -> Finding:
         """The deflection after one step vanishes with the step; a feedthrough would stay."""
         force = np.full((1, len(FORCES)), _FORCE)
-        whole, half = (np.abs(self._run(force, h)[1]) for h in (self._step, self._step / 2.0))
+        steps = self._step, self._step / 2.0
+        whole, half = (np.abs(self._runs.positions(force, h)[1]) for h in steps)
         ratio = float((half / np.where(whole > 0.0, whole, np.inf)).max())
         holds = ratio <= FEEDTHROUGH_RATIO
         return judged(
@@ -91,7 +74,7 @@ class Behaviour:
     def delay(self) -> Finding:
         """Velocities after one step under a force are those after two, over 2 for a mass."""
         forces = np.full((2, len(FORCES)), _FORCE)
-        one, two = np.abs(self._outputs(forces, VELOCITIES, self._step)[1:])
+        one, two = np.abs(self._runs.outputs(forces, VELOCITIES)[1:])
         ratio = float(one.max() / two.max()) if two.any() else 0.0
         holds = ratio >= LEAST_PROMPTNESS
         return judged("no delay", holds, f"v(h) / v(2h) = {ratio:.2f}", f"{LEAST_PROMPTNESS:g}")
@@ -99,7 +82,7 @@ class Behaviour:
     def velocities(self) -> Finding:
         """The integral of the velocities is the change of the positions: by Simpson's rule."""
         names = (*POSITIONS, *VELOCITIES)
-        found = self._outputs(random_forces(1, self._step), names, self._step)
+        found = self._runs.outputs(random_forces(1, self._step), names)
         s, v = np.split(found, 2, axis=1)
         pieces = (v[:-2:2] + 4.0 * v[1:-1:2] + v[2::2]) * self._step / 3.0
         integral, change = np.cumsum(pieces, axis=0), s[2::2] - s[0]
@@ -114,7 +97,7 @@ class Behaviour:
         """Whether vibration after a push dies out; it may stay, but must not grow."""
         forces = np.zeros((2 * _SETTLING, len(FORCES)))
         forces[0] = _FORCE
-        speed = np.abs(self._outputs(forces, VELOCITIES, self._step)[1:])
+        speed = np.abs(self._runs.outputs(forces, VELOCITIES)[1:])
         part = len(speed) // 4
         left = float(np.sqrt((speed[-part:] ** 2).mean() / (speed[:part] ** 2).mean()))
         shown = f"{100 * left:.2g} % left after {1e3 * 2 * _SETTLING * self._step:.3g} ms"
@@ -127,9 +110,7 @@ class Behaviour:
 
     def zero(self) -> Finding:
         """Nothing moves without force."""
-        found = self._outputs(
-            np.zeros((_RECORD, len(FORCES))), (*POSITIONS, *VELOCITIES), self._step
-        )
+        found = self._runs.outputs(np.zeros((_RECORD, len(FORCES))), (*POSITIONS, *VELOCITIES))
         largest = float(np.abs(found).max())
         return judged("zero stays zero", largest == 0.0, f"{largest:g}", "0")
 
@@ -180,7 +161,7 @@ class Behaviour:
     def superposition(self) -> Finding:
         """The response to all forces at once is the sum of the single ones."""
         forces = _FORCE * np.random.default_rng(1).standard_normal(len(FORCES))
-        together = self._run(np.tile(forces, (_SETTLING, 1)))
+        together = self._runs.positions(np.tile(forces, (_SETTLING, 1)))
         expected = np.tensordot(forces, self._unit_responses, axes=1)
         error = float(np.abs(together - expected).max() / np.abs(expected).max())
         holds = error <= SUPERPOSITION_ERROR
@@ -189,7 +170,7 @@ class Behaviour:
 
     def passivity(self) -> Finding:
         """Work from rest is never negative."""
-        lowest = min(least_work(self._run, seed, self._step) for seed in range(RECORDS))
+        lowest = min(least_work(self._runs.positions, seed, self._step) for seed in range(RECORDS))
         holds = lowest >= -NEGATIVE_WORK
         shown = f"{lowest:.1g} of the highest work" if lowest < 0.0 else "no negative work"
         return judged("passivity", holds, shown, f"-{NEGATIVE_WORK:g}, {RECORDS} records")
@@ -197,14 +178,20 @@ class Behaviour:
     def halving(self) -> Finding:
         """The rms of the positions at half the step, under the same forces."""
         forces = random_forces(0, self._step)
-        whole = self._run(forces)[1:]
-        half = self._run(np.repeat(forces, 2, axis=0), self._step / 2.0)[2::2]
+        whole = self._runs.positions(forces)[1:]
+        half = self._runs.positions(np.repeat(forces, 2, axis=0), self._step / 2.0)[2::2]
         change = float(abs(_rms(half) / _rms(whole) - 1.0))
         holds = change <= HALVING_CHANGE
         return judged(
             "step halving", holds, f"rms changes by {100 * change:.2g} %",
             f"{100 * HALVING_CHANGE:g} %",
         )  # fmt: skip
+
+
+def steps_of_tests() -> int:
+    """Steps that all tests take but for a few: to settle, and in records."""
+    settling = len(FORCES) + 1 + 2  # single forces, all of them, and vibration
+    return settling * _SETTLING + (RECORDS + 5) * _RECORD
 
 
 def random_forces(seed: int, step: float, steps: int = _RECORD) -> np.ndarray:

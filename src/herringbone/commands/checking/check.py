@@ -48,6 +48,13 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="of the trials that tell what it is [s]; that of the FMU, and shorter ones where that "
         "leaves something open",
     )
+    sub.add_argument(
+        "--longest-trial",
+        type=int,
+        metavar="STEPS",
+        help="of a trial for the test of a role: of a slow FMU a test that takes a longer one is "
+        "left out, and says so; as many as the tests want",
+    )
     sub.add_argument("--json", action="store_true", help="the contract's tests as JSON")
     add_cells(sub)
 
@@ -113,6 +120,11 @@ def _refuse_wrong(options: argparse.Namespace) -> None:
         raise ParameterError("--json belongs to the test of a role; add --as")
     if options.set and not options.role:
         raise ParameterError("--set belongs to the test of a role; add --as")
+    if options.longest_trial is not None:
+        if not options.role:
+            raise ParameterError("--longest-trial belongs to the test of a role; add --as")
+        if options.longest_trial < 1:
+            raise ParameterError(f"--longest-trial {options.longest_trial}: it must be 1 at least")
     if options.step is not None and not options.step > 0.0:
         raise ParameterError(f"--step {options.step:g}: it must be positive, in s")
 

@@ -55,18 +55,23 @@ def check_command(options: argparse.Namespace) -> int:
 
 def _tested(options: argparse.Namespace, progress: Report) -> tuple[list[Finding], float]:
     """Findings, and the step of the trials [s]."""
-    role, fmu = ROLES[options.role], options.fmu
+    role, fmu, longest = ROLES[options.role], options.fmu, options.longest_trial
     with many_of(fmu.stem, fmu) as new:
         make = started(new, assignments(options.set, "--set", "VARIABLE=VALUE"))
         if role is Role.HOUSING:
             step = options.step or STEP
             static = None if options.against is None else _static(options.against)
             usual = usual_compliance()
-            found = check_housing(make, static=static, usual=usual, step=step, progress=progress)
+            found = check_housing(
+                make, static=static, usual=usual, step=step, longest=longest, progress=progress
+            )
             return found, step
         step = options.step or own_step(fmu)
         flanges = options.flange or ()
-        return check_flanges(make, role, step=step, flanges=flanges, progress=progress), step
+        found = check_flanges(
+            make, role, step=step, flanges=flanges, longest=longest, progress=progress
+        )
+        return found, step
 
 
 def _static(against: Path) -> np.ndarray:

@@ -15,7 +15,7 @@ from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.signature import Answer
 
 _STEPS = 8
-_LONG = 1024
+LONG = 1024
 """Steps in which an input that seems to do nothing may still come out."""
 _NOTHING = 1e-9
 """Differences over the largest one that are rounding."""
@@ -64,9 +64,9 @@ def _late(lab: Laboratory, changes: np.ndarray, silent: Sequence[int]) -> dict[i
     They are changed all at once first: where nothing comes of that, as of inputs that nothing
     reads, it is one long run and not one each.
     """
-    if not silent or not _differences(lab, _only(changes, silent), lab.step, _LONG).any():
+    if not silent or not _differences(lab, _only(changes, silent), lab.step, LONG).any():
         return {}
-    return {k: _differences(lab, _only(changes, k), lab.step, _LONG) for k in silent}
+    return {k: _differences(lab, _only(changes, k), lab.step, LONG) for k in silent}
 
 
 def _only(changes: np.ndarray, number: int | Sequence[int]) -> np.ndarray:

@@ -10,7 +10,7 @@ from herringbone.core.activity import activity
 from herringbone.core.declaring.declaration import is_node
 from herringbone.core.part import Part
 from herringbone.cosim.fmu.opening import has_further
-from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, find_signature
+from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, cost, find_signature
 from herringbone.cosim.structure.system import PartSpec
 from herringbone.running.foreign.known_signatures import known_signature
 
@@ -87,6 +87,7 @@ def _tried(
             silent = lab.not_finite
             if part.once and not lab.repeats:
                 return _unknown(inputs, outputs, step, f"{_LEFT}: {lab.why}: no trials")
+            cost.tell_cost(lab, part.name)
             if not silent:
                 return find_signature(lab, part.variables)
         with Laboratory(make, inputs, _others(outputs, silent), start, step) as lab:

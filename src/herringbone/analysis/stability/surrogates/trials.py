@@ -9,7 +9,8 @@ import math
 import numpy as np
 
 from herringbone.analysis.stability.surrogates.identification import blocks
-from herringbone.core.activity import tell
+from herringbone.core.activity import lasting, tell
+from herringbone.cosim.signature.cost import PATIENCE
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.trial import Refused
 
@@ -30,8 +31,6 @@ _LASTING = 0.5
 drivetrains with a shaft or a flywheel inside have asked for is 1.1 ms.
 """
 _WORTH = 2.0
-_PATIENCE = 10.0
-"""Time [s] up to which trials need not be announced."""
 
 
 class Trials:
@@ -151,11 +150,12 @@ def tell_cost(lab: Laboratory, name: str) -> None:
     steps = (1 + inputs + _ALIKE_RUNS) * pulse_steps + 4 * _FRESH_STEPS
     short = steps * lab.seconds
     long = short * max(1.0, _longest(inputs, pulse_steps) / lab.step)
-    if long > _PATIENCE:
+    if long > PATIENCE:
         tell(
             f"{name} is slow, {lab.seconds:.2g} s a step of {lab.step:g} s: trials for its linear "
             f"model are {steps} steps of each length, two lengths as a rule and {MOST_LENGTHS} at "
-            f"most; that is {short:.2g} s for each, or {long:.2g} s if long steps take it longer"
+            f"most; that is {lasting(short)} for each, or {lasting(long)} if long steps take it "
+            "longer"
         )
 
 
