@@ -42,6 +42,7 @@ class Laboratory:
         start_outputs: (m,) before the first step.
         not_finite: outputs that are not, at the start or in the first steps.
         instances: how many were made so far.
+        turning: numbers of inputs that are angles and turn on.
     """
 
     def __init__(
@@ -57,6 +58,7 @@ class Laboratory:
         self.inputs, self.outputs, self.start = tuple(inputs), tuple(outputs), np.array(start)
         self.step, self.start_time = step, start_time
         self._make, self._onward = make, onward
+        self.turning = tuple(np.flatnonzero(onward.rates).tolist()) if onward else ()
         self._trial: Trial | None = None
         self._handle: int | None = None
         self._rest: dict[float, np.ndarray] = {}

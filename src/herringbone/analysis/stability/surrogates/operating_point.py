@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.analysis.flange.guess import by_ports, by_units
+from herringbone.analysis.stability.surrogates.free_rotation import for_good
 from herringbone.analysis.stability.surrogates.identification import LinearModel
 from herringbone.analysis.stability.surrogates.stand_in import Stranger
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 
-_FREE = 0.02
-"""Slower motions [1/s] are of what turns freely or integrates: it has no steady torque."""
 _HOLDS = 1e-3
 """Torque that an angle keeps up for good, over what it makes at once: above, it is no shaft's."""
 
@@ -75,25 +74,16 @@ def steady_slope(model: LinearModel, tau: int, phi: int, w: int) -> float:
         tau: number of the output.
         phi, w: numbers of the inputs, -1 if the part has none.
     """
-    if len(model.a) and np.abs(np.linalg.eigvals(model.a)).min() < _FREE:
-        return math.nan
-
-    def passed(column: int, power: int) -> float:
-        """c a^-power b."""
-        b = model.b[:, column]
-        for _ in range(power):
-            b = np.linalg.solve(model.a, b)
-        return float(model.c[tau] @ b)
-
     found = 0.0
     if phi >= 0:
-        at_once = abs(model.d[tau, phi])
-        through = passed(phi, 1)
-        if abs(model.d[tau, phi] - through) > _HOLDS * max(at_once, abs(through)):
+        held = abs(for_good(model, phi)[tau])
+        if not held <= _HOLDS * abs(model.d[tau, phi]):
             return math.nan
-        found -= passed(phi, 2)
+        if len(model.a):
+            twice = np.linalg.solve(model.a, np.linalg.solve(model.a, model.b[:, phi]))
+            found -= float(model.c[tau] @ twice)
     if w >= 0:
-        found += float(model.d[tau, w]) - passed(w, 1)
+        found += float(for_good(model, w)[tau])
     return found if phi >= 0 or w >= 0 else math.nan
 
 
