@@ -6,6 +6,7 @@ answered, and why, is told by `analysis.unanswered`.
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -127,15 +128,41 @@ def shaft_side(result: Result, place: str, gear: str = "") -> Side:
     return Side(coupling or "", rotor or "")
 
 
-def shaft_torques(result: Result, gear: str = "") -> dict[str, str]:
-    """Columns of the coupling torques by gear: pinion (drive side) and wheel (load side)."""
+class ShaftTorque(NamedTuple):
+    """Where the torque of a shaft is recorded.
+
+    Attributes:
+        column: of a coupling, or of another part at the gear's flange.
+        sign: of what drives the gearbox; -1 where the column is what acts on the wheel.
+    """
+
+    column: str
+    sign: float = 1.0
+
+
+def shaft_torques(result: Result, gear: str = "") -> dict[str, ShaftTorque]:
+    """Torques by gear: pinion (drive side) and wheel (load side); positive if power flows so.
+
+    Of the coupling at the gear's flange; without one, what is joined to that gives it to the gear.
+    """
     found = {}
     for place in GEARS:
         coupling = shaft_side(result, place, gear).coupling
         column = coupling and column_of(result, Role.COUPLING, Quantity.TORQUE, part=coupling)
         if column:
-            found[place] = column
+            found[place] = ShaftTorque(column)
+        elif not coupling and (column := flange_torque(result, place, gear)):
+            found[place] = ShaftTorque(column, 1.0 if place == GEARS[0] else -1.0)
     return found
+
+
+def flange_torque(result: Result, place: str, gear: str = "") -> str | None:
+    """Column of the torque that what is joined to a gear's flange gives to it; None without."""
+    anatomy = result.info.anatomy
+    gears = (gear,) if gear else result.parts_with(Role.GEAR_PAIR)[:1]
+    joined = [end for name in gears for end in anatomy.joined(name, PortKind.FLANGE, place)]
+    columns = (f"{'.'.join(end)}.tau" for end in joined)
+    return next((column for column in columns if column in result.data), None)
 
 
 def mesh_forces(result: Result, gear: str = "") -> dict[str, str]:

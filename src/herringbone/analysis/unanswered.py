@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from herringbone.analysis.asked import by_half, shaft_side
+from herringbone.analysis.asked import by_half, shaft_side, shaft_torques
 from herringbone.analysis.figures.flange_power import mean_powers
 from herringbone.analysis.figures.radiated_power import power_inputs
 from herringbone.analysis.figures.sensing.sensors import sensor_figures
@@ -118,15 +118,15 @@ def _untoothed(result: Result) -> Iterator[str]:
 def _unmeasured(result: Result) -> Iterator[str]:
     """Why the torque at a side of a gear pair is not known."""
     gears = result.parts_with(Role.GEAR_PAIR)
-    if not gears or not result.parts_with(Role.COUPLING):
-        yield _nobody(result, Role.COUPLING if gears else Role.GEAR_PAIR)
-        return
+    if not gears:
+        yield _nobody(result, Role.GEAR_PAIR)
     for gear in gears:
-        for place in GEARS:
+        known = shaft_torques(result, gear)
+        for place in [place for place in GEARS if place not in known]:
             coupling = shaft_side(result, place, gear).coupling
-            if not coupling:
-                yield f"no part is known as {Role.COUPLING} at the {place} of {gear}"
-                continue
-            column = result.info.anatomy.column(coupling, Quantity.TORQUE)
-            if column not in result.data:
+            if not result.parts_with(Role.COUPLING):
+                yield _nobody(result, Role.COUPLING)
+            elif coupling:
                 yield f"{coupling} shows none"
+            else:
+                yield f"no part is known as {Role.COUPLING} at the {place} of {gear}"

@@ -122,10 +122,14 @@ def _of_step(
     """What happens at one step [s], by algorithm."""
     from herringbone.analysis.stability.limits import default_algorithms  # noqa: PLC0415
     from herringbone.analysis.stability.steps.step_verdict import step_verdicts  # noqa: PLC0415
+    from herringbone.analysis.stability.surrogates.operating_point import (  # noqa: PLC0415
+        linear_at,
+    )
 
     chosen = algorithms or default_algorithms()
     verdicts = step_verdicts(of.system, chosen, step, show, of.strangers)
     lines = [line for verdict in verdicts for line in verdict.lines()]
+    lines += linear_at(of.strangers)
     return Told("\n".join(lines), [{**asdict(v), "stable": v.stable} for v in verdicts])
 
 
@@ -139,6 +143,9 @@ def _of_all_steps(
     """Stable steps, bonds and a recommendation; see `_predicted`."""
     from herringbone.analysis.stability import limits, report  # noqa: PLC0415
     from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
+    from herringbone.analysis.stability.surrogates.operating_point import (  # noqa: PLC0415
+        linear_at,
+    )
 
     if of.strangers and options.atlas:
         raise ParameterError("--atlas takes no foreign FMUs; leave it out")
@@ -153,7 +160,7 @@ def _of_all_steps(
         started=of.started,
         remember=of.known,
     )
-    found = replace(found, notes=(*of.missing, *found.notes))
+    found = replace(found, notes=(*of.missing, *linear_at(of.strangers), *found.notes))
     if options.atlas:
         panels += atlas(of.system, progress=show)
         found = replace(found, notes=(*found.notes, *unscaled(of.system)))

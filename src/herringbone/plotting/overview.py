@@ -82,7 +82,10 @@ def _draw(result: Result, panels: dict[str, Panel]) -> Figure:
 
 def _torque_and_speed(axes: Axes, result: Result) -> None:
     """Torques [N m] on the left axis, pinion speed [r/min] on the right one."""
-    names = {f"{gear} torque": column for gear, column in shaft_torques(result).items()}
+    names = {
+        f"{gear} torque" if torque.sign > 0.0 else f"torque on the {gear}": torque.column
+        for gear, torque in shaft_torques(result).items()
+    }
     time_panel(axes, result, names, "torque", unit="N m")
     legend(axes, 2)
     speed = column_of(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion")

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from herringbone.analysis.asked import by_half, column_of, shaft_side
+from herringbone.analysis.asked import by_half, column_of, flange_torque, shaft_side
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.radiated_power import LABEL, level_db
 from herringbone.analysis.figures.radiated_power import radiated_power as power_of
@@ -154,6 +154,8 @@ def _shaft(result: Result, gear: str) -> tuple[dict[str, str], dict[str, str]]:
     torques = {}
     if side.coupling:
         torques[side.coupling] = anatomy.column(side.coupling, Quantity.TORQUE)
+    elif column := flange_torque(result, gear):
+        torques[f"on the {gear}"] = column
     if side.rotor:
         torques[side.rotor] = anatomy.column(side.rotor, Quantity.TORQUE)
         speeds[side.rotor] = anatomy.column(side.rotor, Quantity.SPEED)

@@ -14,7 +14,8 @@ from herringbone.cosim.structure.system import System
 from herringbone.result.budget import BudgetRow
 from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.foreign.interfaces import unfed
-from herringbone.running.foreign.surrogates import surrogates_of, turned_back, under_load
+from herringbone.running.foreign.linear_start import turned_back, under_load
+from herringbone.running.foreign.surrogates import surrogates_of
 from herringbone.running.loading import instances
 from herringbone.running.remembered_answers import bond_of, stability_warning
 from herringbone.running.steps.suited_step import suited_step

@@ -50,5 +50,6 @@ class KnownLimits:
             kernels_key(*_SOURCES),
             *versions_of(*_LIBRARIES),
             *contents_of_system(self.system),
+            *(repr(spec.approach) for spec in self.system.parts),
             f"{algorithm!r} {simulated} {self.step!r}",
         )

@@ -87,23 +87,40 @@ def _settled(system: System, step: float) -> tuple[System, tuple[str, ...]]:
         found, lines = loaded_settled_start(system, known_parts(system), step)
     lines += _dropped(system, found.values)
     for name, way in found.approaches.items():
+        if not way.duration:
+            continue
         lines.append(
             f"{name}: foreign; it is stepped over {way.duration:g} s before the start, under what "
             "it is given in the steady rotation in which the run begins"
         )
+    fastest = found.fastest
     if abs(found.acceleration) > _MOVED:
         lines.append(
             f"torques do not balance: the steady rotation speeds up by {found.acceleration:.4g} "
-            "rad/s^2 of the fastest shaft"
+            f"rad/s^2, from {fastest} = {_speed(found.values[fastest]):.6g} rad/s"
+            f"{_unset(system, fastest)}"
         )
     if found.moved:
         lines.append(
-            f"{found.moved} starts at {found.values[found.moved]:.6g} rad/s, where torques balance "
-            f"(given: {value_at(system, found.moved):.6g} rad/s); --start {Start.REST} takes what "
+            f"{fastest} starts at {found.values[fastest]:.6g} rad/s, where torques balance "
+            f"(given: {value_at(system, fastest):.6g} rad/s); --start {Start.REST} takes what "
             "is given"
         )
     parts = tuple(replace(part, approach=found.approaches.get(part.name)) for part in system.parts)
     return replace(system, parts=parts).with_values(found.values), tuple(lines)
+
+
+def _speed(value: float | str) -> float:
+    """A start value [rad/s]; rounding of rest is rest."""
+    return float(value) if abs(float(value)) > _NOTHING else 0.0
+
+
+def _unset(system: System, speed: str) -> str:
+    """What to do about a speed that nobody set."""
+    instance, name = system.split(speed)
+    if system.part(instance).values.get(name) is not None:
+        return ""
+    return f", which nothing sets; --set {speed}=... does"
 
 
 def _ramps(system: System, time: float) -> Values:

@@ -12,7 +12,8 @@ from herringbone.analysis.stability.limits import stability
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.algorithms import Jacobi
-from herringbone.running.foreign.surrogates import opened_surrogates, turned_back, under_load
+from herringbone.running.foreign.linear_start import turned_back, under_load
+from herringbone.running.foreign.surrogates import opened_surrogates
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.start import known_parts
 from herringbone.scenes import Start

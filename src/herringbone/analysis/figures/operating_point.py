@@ -152,7 +152,7 @@ def power_balance(result: Result) -> PowerBalance | None:
     return PowerBalance(
         float(drive.mean()),
         float(recovered.mean()),
-        float((result.data[pinion].to_numpy()[rows] * pinion_speed).mean()),
+        float((result.data[pinion.column].to_numpy()[rows] * pinion_speed).mean()),
         float(drive.mean()) - mechanical,
         float(load_loss.mean()),
         mechanical - float((recovered + load_loss).mean()),

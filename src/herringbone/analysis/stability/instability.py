@@ -5,6 +5,7 @@ import numpy as np
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.growth import GROWTH, Growth
 from herringbone.analysis.stability.linear_parts import NO_STRANGERS, Strangers, linear_network
+from herringbone.analysis.stability.surrogates.operating_point import where
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.core import HerringboneError
 from herringbone.core.energy_report import hertz
@@ -47,18 +48,23 @@ def warn_if_unstable(
     if amplification.residual > PROMISED:
         return None
     if _grows_itself(amplification, growth, step):
-        where = "linear at the start"
-        if strangers:
-            where += f", and with {', '.join(strangers)} linear at the values declared"
         return (
-            f"{system.name} itself, {where}, grows at {hertz(growth.frequency)} "
-            f"{_in_time(growth, step, duration)}, whatever the step"
+            f"{system.name} itself, linear at the start{_elsewhere(strangers)}, grows at "
+            f"{hertz(growth.frequency)} {_in_time(growth, step, duration)}, whatever the step"
         )
     return (
         f"{algorithm} is unstable at a step of {step:g} s: a motion at {hertz(growth.frequency)} "
         f"grows by {100.0 * (growth.radius - 1.0):.3g} % per step, "
-        f"{_in_time(growth, step, duration)}; 'herringbone stability' shows the limits"
+        f"{_in_time(growth, step, duration)}{_elsewhere(strangers)}; 'herringbone stability' shows "
+        "the limits"
     )
+
+
+def _elsewhere(strangers: Strangers) -> str:
+    """Foreign parts whose models are not those of the start, and at which point they are."""
+    found = (f"{name} {where(each)}" for name, each in strangers.items() if not each.at_start)
+    told = ", and ".join(found)
+    return f", with {told}" if told else ""
 
 
 def _grows_itself(amplification: Amplification, growth: Growth, step: float) -> bool:

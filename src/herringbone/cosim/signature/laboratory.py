@@ -4,6 +4,7 @@ A state that is restored is trusted only after steps from it gave equal bits twi
 trial has a new instance.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from time import perf_counter
 from types import TracebackType
@@ -14,6 +15,7 @@ import numpy as np
 from herringbone.core import FmuError
 from herringbone.core.part import Part
 from herringbone.cosim.signature.trial import Refused, Trial
+from herringbone.cosim.structure.approach import Onward
 
 _TESTED_STEPS = 3
 
@@ -28,6 +30,8 @@ class Laboratory:
         start: (n,) values of the inputs at the start.
         step: of the trials [s].
         start_time: of the experiment [s].
+        onward: how inputs move on from the start; None: all stay. Angles that turn are told
+            relative to that motion, 0 at the start.
 
     Attributes:
         restores: True if saving and restoring gives equal bits; False if not, None if the part does
@@ -38,6 +42,7 @@ class Laboratory:
         start_outputs: (m,) before the first step.
         not_finite: outputs that are not, at the start or in the first steps.
         instances: how many were made so far.
+        turning: numbers of inputs that are angles and turn on.
     """
 
     def __init__(
@@ -48,10 +53,12 @@ class Laboratory:
         start: np.ndarray,
         step: float,
         start_time: float = 0.0,
+        onward: Onward | None = None,
     ) -> None:
         self.inputs, self.outputs, self.start = tuple(inputs), tuple(outputs), np.array(start)
         self.step, self.start_time = step, start_time
-        self._make = make
+        self._make, self._onward = make, onward
+        self.turning = tuple(np.flatnonzero(onward.rates).tolist()) if onward else ()
         self._trial: Trial | None = None
         self._handle: int | None = None
         self._rest: dict[float, np.ndarray] = {}
@@ -90,7 +97,7 @@ class Laboratory:
             self._trial = self._instance()
         else:
             self._trial.restore(self._handle)
-        self._trial.set(self.start)
+        self._give(self._trial, self.start, 0.0)
         return self._trial
 
     def run(self, inputs: Sequence[np.ndarray], h: float) -> np.ndarray:
@@ -107,8 +114,7 @@ class Laboratory:
             trial = self.at_start()
             found = [trial.values()]
             for values in inputs:
-                trial.set(values)
-                trial.step(h)
+                self._step(trial, values, h)
                 found.append(trial.values())
         except Refused:
             self._close()  # after a refused step an FMU must not be used on
@@ -127,11 +133,14 @@ class Laboratory:
             Refused: the part does.
         """
         count, found = len(self.inputs), []
+        turning = np.zeros(signals.shape[1] - count)
+        if self._onward and turning.size:
+            turning[:count] = self._onward.rates
         try:
             trial = self.at_start()
             for given in signals:
-                trial.set(given[:count])
-                trial.set_derivatives(given[count:])
+                self._give(trial, given[:count], 0.0 if turning.size else h)
+                trial.set_derivatives(given[count:] + turning)
                 trial.step(h)
                 found.append(np.concatenate([trial.values(), trial.rates() if rated else []]))
         except Refused:
@@ -144,10 +153,8 @@ class Laboratory:
         try:
             trial = self.at_start()
             for values in lead:
-                trial.set(values)
-                trial.step(self.step)
-            trial.set(last)
-            trial.step(h)
+                self._step(trial, values, self.step)
+            self._step(trial, last, h)
             return trial.values()
         except Refused:
             self._close()
@@ -163,6 +170,19 @@ class Laboratory:
             self._rest[h] = self.run([self.start] * steps, h)[1:]
         return self._rest[h][:steps]
 
+    def _step(self, trial: Trial, values: np.ndarray, h: float) -> None:
+        """A step of h [s] on inputs (n,) that stay; of shorter ones where held angles turn on."""
+        pieces = max(1, math.ceil(h / self._onward.longest)) if self._onward else 1
+        for _ in range(pieces):
+            self._give(trial, values, h / pieces)
+            trial.step(h / pieces)
+
+    def _give(self, trial: Trial, values: np.ndarray, h: float) -> None:
+        """Set inputs for a step of h [s], with the angles that have turned on since the start."""
+        if self._onward:
+            values = values + self._onward.turned(trial.time - self.start_time, h)
+        trial.set(values)
+
     def _instance(self) -> Trial:
         stop = self.start_time + 1e6 * self.step
         self.instances += 1
@@ -171,9 +191,8 @@ class Laboratory:
     def _steps(self, trial: Trial) -> np.ndarray:
         found = []
         for number in range(_TESTED_STEPS):
-            trial.set(self.start + self._stir(number))
             begun = perf_counter()
-            trial.step(self.step)
+            self._step(trial, self.start + self._stir(number), self.step)
             self.seconds = min(self.seconds, perf_counter() - begun)
             found.append(trial.values())
         return np.array(found)
@@ -185,7 +204,7 @@ class Laboratory:
     def _test(self) -> None:
         self._trial = self._instance()
         saved = self._saved()
-        self._trial.set(self.start)
+        self._give(self._trial, self.start, 0.0)
         self.start_outputs = self._trial.values()
         first = self._steps(self._trial)
         finite = np.isfinite(np.vstack([self.start_outputs, first])).all(axis=0)

@@ -47,8 +47,8 @@ class ApproachedPart(PartAdapter):
 
 
 def approached(part: Part, given: Approach | None) -> Part:
-    """The part, with its approach in front of it if it has one."""
-    return part if given is None else ApproachedPart(part, given)
+    """The part, with its approach in front of it if it is stepped before the run."""
+    return ApproachedPart(part, given) if given and given.duration else part
 
 
 def approach(trial: Trial, given: Approach) -> None:

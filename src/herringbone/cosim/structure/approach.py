@@ -23,6 +23,7 @@ import numpy as np
 _TAPERED = 10
 """Halvings of the last step: what is held over the last piece is what stands at its end."""
 _WHOLE = 1e-9
+_MEAN = 0.5
 
 
 @dataclass(frozen=True)
@@ -47,12 +48,37 @@ class SteadyInput:
 
 
 @dataclass(frozen=True)
+class Onward:
+    """How inputs move on from the start of the run: n of them, angles turn on, all others stay.
+
+    Speeds stay, too, whatever speeds the shafts up: what is found on the way is told of one speed.
+
+    Attributes:
+        still: (n,) inputs that stay; 0 for angles that turn.
+        angles: (n,) angles that turn, at the start; 0 for all others.
+        rates: (n,) of these [rad/s].
+        share: of each step at which they are taken, see `Approach`.
+        longest: step [s] in which an angle that is held is no jolt.
+    """
+
+    still: np.ndarray
+    angles: np.ndarray
+    rates: np.ndarray
+    share: float
+    longest: float
+
+    def turned(self, t: float, h: float) -> np.ndarray:
+        """(n,) angles that turn, for a step from t [s] of length h [s]; 0 for all others."""
+        return self.angles + self.rates * (t + self.share * h)
+
+
+@dataclass(frozen=True)
 class Approach:
     """What a part is given before the run.
 
     Attributes:
         inputs: in steady motion.
-        duration: T [s].
+        duration: T [s]; 0: it has no memory, and is not stepped.
         step: longest step [s].
         share: of each step at which angles that turn are taken: 0.5, the mean; 0, its start; 1,
             its end; see `cosim.signature.rotation`.
@@ -63,7 +89,7 @@ class Approach:
     inputs: tuple[SteadyInput, ...]
     duration: float
     step: float
-    share: float = 0.5
+    share: float = _MEAN
     gradual: bool = True
     tapered: bool = True
 
@@ -95,6 +121,19 @@ class Approach:
     def at_end(self) -> np.ndarray:
         """(n,) inputs at the start of the run."""
         return np.array([u.value for u in self.inputs])
+
+    @cached_property
+    def onward(self) -> "Onward":
+        """How inputs move on from the start."""
+        values, rates, _, _, turning, _ = self._columns
+        longest = self.step if self.share == _MEAN and self.tapered else math.inf
+        return Onward(
+            np.where(turning, 0.0, values),
+            np.where(turning, values, 0.0),
+            np.where(turning, rates, 0.0),
+            self.share,
+            longest if turning.any() else math.inf,
+        )
 
     def turned(self, rate: float, acceleration: float) -> float:
         """By what an angle of such a motion turns until the start of the run."""

@@ -8,12 +8,8 @@ from typing import NamedTuple
 from herringbone.analysis.stability.linear_parts import Strangers
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.system import System
-from herringbone.running.foreign.surrogates import (
-    opened_surrogates,
-    turned_back,
-    under_load,
-    without_missing,
-)
+from herringbone.running.foreign.linear_start import turned_back, under_load
+from herringbone.running.foreign.surrogates import opened_surrogates, without_missing
 from herringbone.running.known_limits import KnownLimits
 from herringbone.running.prepared import Wishes, prepared
 

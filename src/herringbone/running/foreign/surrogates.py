@@ -1,19 +1,17 @@
 """Linear surrogates of a system's foreign parts, for what is predicted before a run."""
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.equilibrium import even_acceleration
-from herringbone.analysis.rigid_rotation import names_of_states
 from herringbone.analysis.stability.surrogates.sampled import SampledSurrogate, round_period
 from herringbone.analysis.stability.surrogates.stand_in import Stranger
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 from herringbone.analysis.stability.surrogates.trials import tell_cost
-from herringbone.analysis.twin.monolithic import Twin
-from herringbone.core import FmuError, HerringboneError
+from herringbone.core import FmuError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.adapter import WithoutStates
@@ -23,19 +21,14 @@ from herringbone.cosim.signature import Kind, Laboratory, Signature
 from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.trial import Refused
 from herringbone.cosim.starting.approached_part import approached
+from herringbone.cosim.structure.approach import Onward
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.foreign.foreign_parts import alike, understood
 from herringbone.running.foreign.trials import found_signature, start_inputs
 from herringbone.running.loading import instances, open_parts
-from herringbone.running.pairs.carrying_flank import loaded_start
-from herringbone.running.pairs.mesh_phases import steady_values
-from herringbone.running.pairs.open_flanges import loaded
-from herringbone.running.start import known_parts, ramp_times, without_parts
-
-_TORQUE = 200.0
-"""At pinions that only foreign parts load [N m]; limits hardly depend on it."""
+from herringbone.running.start import without_parts
 
 _USUAL_STEPS = (1e-3, 1e-4, 1e-2, 1e-5, 5e-4, 2e-3, 5e-3, 2e-4, 0.1)
 """That are tried of parts that take steps of one length only [s]."""
@@ -117,59 +110,6 @@ def without_missing(system: System, found: Surrogates) -> tuple[System, tuple[st
     return rest, (*found.lines, f"what is told is of the system without {names}")
 
 
-def under_load(system: System) -> System:
-    """The system with its own parts in steady rotation under load, as they are after a ramp.
-
-    What foreign parts would feed is taken as zero; but gears that only these load have 200 N m at
-    the pinion, so that their meshes are closed. Where nothing balances a load, as the motor is
-    foreign, it speeds the drivetrain up evenly: teeth that carry nothing are softer, and have no
-    damping. As it is where there is no such rotation either, or where it is in equilibrium with
-    foreign parts, too.
-    """
-    if not system.foreign_parts or len(system.foreign_parts) == len(system.parts):
-        return system
-    if _is_brought(system):
-        return system
-    steady = system.with_values(dict.fromkeys(ramp_times(system), 0.0))
-    known = known_parts(steady)
-    own = loaded(known, _TORQUE)
-    if own is not known:
-        values = {
-            f"{part.name}.{name}": value
-            for part in own.parts
-            for name, value in part.values.items()
-        }
-        steady = steady.with_values(values)
-    for rotation in (steady_values, even_acceleration):
-        with suppress(HerringboneError):
-            return steady.with_values(loaded_start(own, rotation)[0])
-    return system
-
-
-def turned_back(system: System) -> System:
-    """The system with its shafts turned back to angles near 0, where differences are exact.
-
-    For matrices alone: in a run, foreign parts that are brought to the start would stand at angles
-    that own shafts have left. As it is where none are brought.
-    """
-    if not _is_brought(system):
-        return system
-    twin = Twin(known_parts(system))
-    x = twin.state
-    rates = twin.rhs(0.0, x)
-    turning = [i for i in twin.turning if rates[i] != 0.0]
-    if not turning:
-        return system
-    time = x[turning[0]] / rates[turning[0]]
-    names = names_of_states(twin)
-    return system.with_values({names[i]: float(x[i] - time * rates[i]) for i in turning})
-
-
-def _is_brought(system: System) -> bool:
-    """True if it starts in equilibrium with foreign parts, which are stepped before."""
-    return any(part.approach for part in system.parts)
-
-
 def _add(
     found: Surrogates,
     spec: PartSpec,
@@ -185,7 +125,7 @@ def _add(
             else found_signature(spec, part, instances, step)
         )
         make = stack.enter_context(instances(spec))
-        made = _surrogate(make, part, signature, ports, step, stack)
+        made = _surrogate(spec, make, part, signature, ports, step, stack)
     except FmuError as error:
         found.missing[part.name] = str(error)
         return
@@ -195,11 +135,15 @@ def _add(
         found.missing[part.name] = made.why
     else:
         found.strangers[part.name] = Stranger(
-            part, made, lambda: alike(part, approached(make(), spec.approach))
+            part,
+            made,
+            lambda: alike(part, approached(make(), spec.approach)),
+            at_start=spec.approach is not None,
         )
 
 
 def _surrogate(
+    spec: PartSpec,
     make: Callable[[], Part],
     part: Part,
     signature: Signature,
@@ -212,10 +156,10 @@ def _surrogate(
     if why:
         return why
     inputs, outputs = ports
-    start = start_inputs(make(), inputs) if inputs else np.empty(0)
+    begin = _beginning(spec, make, inputs)
     if part.one_step or signature.tick:
-        return _with_clock(make, part, signature, ports, start, step, stack)
-    lab = stack.enter_context(Laboratory(make, inputs, outputs, start, step))
+        return _with_clock(begin, part, signature, ports, step, stack)
+    lab = stack.enter_context(begin.laboratory(inputs, outputs, step))
     at = part.addresses  # an adapter that holds inputs has none of derivatives
     takes, gives = at.set_derivatives != 0, at.get_derivatives != 0
     tell_cost(lab, part.name)
@@ -225,12 +169,38 @@ def _surrogate(
     return found
 
 
+class _Beginning(NamedTuple):
+    """Where trials of a part begin: with the run, if it starts in steady motion.
+
+    Attributes:
+        make: makes an instance that is there.
+        start: (n,) inputs there; 0 for angles that turn.
+        onward: how these move on; None: they stay.
+    """
+
+    make: Callable[[], Part]
+    start: np.ndarray
+    onward: Onward | None
+
+    def laboratory(self, inputs: list[str], outputs: list[str], step: float) -> Laboratory:
+        """Of trials from here, with steps of a length [s] at first."""
+        return Laboratory(self.make, inputs, outputs, self.start, step, onward=self.onward)
+
+
+def _beginning(spec: PartSpec, make: Callable[[], Part], inputs: list[str]) -> _Beginning:
+    if spec.approach is None:
+        start = start_inputs(make(), inputs) if inputs else np.empty(0)
+        return _Beginning(make, start, None)
+    given = {u.name: u for u in spec.approach.inputs}
+    onward = replace(spec.approach, inputs=tuple(given[name] for name in inputs)).onward
+    return _Beginning(lambda: approached(make(), spec.approach), onward.still, onward)
+
+
 def _with_clock(
-    make: Callable[[], Part],
+    begin: _Beginning,
     part: Part,
     signature: Signature,
     ports: tuple[list[str], list[str]],
-    start: np.ndarray,
     step: float,
     stack: ExitStack,
 ) -> SampledSurrogate | str:
@@ -238,17 +208,17 @@ def _with_clock(
     inputs, outputs = ports
 
     def of_one_length() -> Part:  # an instance that was restored may have taken other steps
-        return WithoutStates(make())
+        return WithoutStates(begin.make())
 
-    fresh = of_one_length if part.one_step else make
+    fresh = begin._replace(make=of_one_length) if part.one_step else begin
     wanted = (step, *_USUAL_STEPS) if part.one_step else (round_period(signature.tick),)
     for period in wanted:
-        lab = Laboratory(fresh, inputs, outputs, start, period)
+        lab = fresh.laboratory(inputs, outputs, period)
         try:
             stack.enter_context(lab)
         except Refused:
             continue
-        pairs = zip(inputs, start, strict=True)
+        pairs = zip(inputs, begin.start, strict=True)
         changes = np.array([amplitude(part.variables[name], float(x)) for name, x in pairs])
         divides = signature.kind is Kind.SAMPLED
         return SampledSurrogate(part.name, lab, changes, divides=divides)

@@ -82,8 +82,8 @@ def _of_gear_pair(result: Result, gear: str) -> Iterator[tuple[str, str]]:
         mesh = f", mesh frequency f_m {frequency:.1f} Hz" if frequency else ""
         mean = speed[steady_part(result).rows].mean()
         yield "Pinion speed", f"{_rounded(mean * _R_MIN, 1)} r/min{mesh}"
-    columns = shaft_torques(result, gear)
-    torques = {place: moments(result, column).mean for place, column in columns.items()}
+    found = shaft_torques(result, gear)
+    torques = {place: t.sign * moments(result, t.column).mean for place, t in found.items()}
     if torques:
         shown = (f"{place} {_rounded(torque, 1)} N m" for place, torque in torques.items())
         yield "Torque", ", ".join(shown)

@@ -79,7 +79,7 @@ def _gear_pair(result: Result, gear: str) -> Iterator[tuple[str, Any]]:
         yield "pinion_speed_r_min", float(speed[steady_part(result).rows].mean()) * _R_MIN
     yield "mesh_frequency_Hz", run_mesh_frequency(result, gear=gear)
     torques = shaft_torques(result, gear).items()
-    yield "torque_Nm", {place: moments(result, column).mean for place, column in torques}
+    yield "torque_Nm", {place: t.sign * moments(result, t.column).mean for place, t in torques}
     forces = mesh_forces(result, gear).items()
     yield "mesh_force_N", {side: moments(result, column)._asdict() for side, column in forces}
 

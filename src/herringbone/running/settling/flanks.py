@@ -64,7 +64,7 @@ def _known_start(system: System, known: System, step: float) -> SettledStart:
     file = cache_root() / "settled-starts" / f"{key}.json"
     if (plain := kept(file)) is not None:
         approaches = {name: _approach(way) for name, way in plain["approaches"].items()}
-        return SettledStart(plain["values"], approaches, plain["acceleration"], plain["moved"])
+        return SettledStart(**{**plain, "approaches": approaches})
     found = settled_start(system, known, step)
     ways = {str(name): asdict(way) for name, way in found.approaches.items()}
     keep(file, {**found._asdict(), "values": dict(found.values), "approaches": ways})

@@ -1,5 +1,6 @@
 """The search for a start in equilibrium with foreign parts; see `settled_start`."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -32,15 +33,17 @@ class SettledStart(NamedTuple):
 
     Attributes:
         values: by `instance.variable`.
-        approaches: by part; what has no memory needs none.
+        approaches: by part; what has no memory is not stepped.
         acceleration: of the fastest shaft [rad/s^2].
-        moved: path of the speed that was moved to where torques balance; "" if none was.
+        fastest: path of its speed; "" where the drivetrain cannot turn as a whole.
+        moved: that was moved to where torques balance.
     """
 
     values: Values
     approaches: dict[str, Approach]
     acceleration: float
-    moved: str = ""
+    fastest: str
+    moved: bool = False
 
 
 class Search:
@@ -74,7 +77,8 @@ class Search:
             answer = self._settled(motion)
             straight = slopes @ links.own_values(motion) + by_acceleration * motion.acceleration
             if np.all(np.abs(answer - straight - constant) <= _SAME * links.sizes(answer)):
-                return SettledStart(motion.values, self._approaches(motion), motion.acceleration)
+                ways = self._approaches(motion)
+                return SettledStart(motion.values, ways, motion.acceleration, motion.fastest)
             constant = search.next(constant, answer - straight)
         raise NoSettledStartError("what foreign parts answer and what own parts give do not meet")
 
@@ -110,7 +114,7 @@ class Search:
                 if (speed - begin) * first < 0.0:
                     return None
                 ways = self._approaches(motion.at_acceleration(0.0))
-                return SettledStart(motion.values, ways, 0.0, still.fastest)
+                return SettledStart(motion.values, ways, 0.0, still.fastest, moved=True)
             faster = speed + _FASTER * abs(begin) * motion.acceleration / (abs(first) or 1.0)
             unknown = search.next(unknown, np.append(constant, faster))
         return None
@@ -124,8 +128,10 @@ class Search:
         return still, self._settled(still)
 
     def _approaches(self, motion: OwnMotion) -> dict[str, Approach]:
-        """How parts with states come there, by name."""
-        return {p.name: self._approach(p, motion) for p in self._strangers if not p.at_once}
+        """How foreign parts come there, by name."""
+        found = {p.name: self._approach(p, motion) for p in self._strangers}
+        at_once = {p.name for p in self._strangers if p.at_once}
+        return {k: replace(v, duration=0.0) if k in at_once else v for k, v in found.items()}
 
     def _balanced(
         self, constant: np.ndarray, slopes: np.ndarray, by_acceleration: np.ndarray

@@ -1,5 +1,6 @@
 """What stands for a foreign part in a linear analysis, with what the coupling puts before it."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -20,6 +21,8 @@ _SHARE = 1e-4
 """Differences of outputs over their values at the operating point, at the least."""
 _RATES = 1e3
 """Differences of rates over those of the outputs [1/s]."""
+_RUNGS = 4
+"""Lengths an octave at which a dear part's residual is found."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +33,14 @@ class Stranger:
         part: the real one.
         surrogate: its linear model.
         fresh: makes one more of the real part.
+        at_start: the model is that of the steady motion in which the run starts; else that of the
+            values that the part declares.
     """
 
     part: Part
     surrogate: Surrogate | SampledSurrogate
     fresh: Callable[[], Part]
+    at_start: bool = False
 
 
 class StandIn:
@@ -140,7 +146,11 @@ class StandIn:
 
     @property
     def residual(self) -> float:
-        """Largest of those of the lengths of its steps in the last macro step."""
-        orders = self._inner.orders_given
-        found = (self.surrogate.residual(h, orders) for h in set(self._lengths))
-        return max(found, default=0.0)
+        """Largest of those of the lengths of its steps in the last macro step.
+
+        Where each trial takes an instance, of lengths that are up to a fifth longer, and few.
+        """
+        orders, lengths = self._inner.orders_given, set(self._lengths)
+        if self.surrogate.fresh_instances and not self.clock:
+            lengths = {2.0 ** (math.ceil(_RUNGS * math.log2(h)) / _RUNGS) for h in lengths}
+        return max((self.surrogate.residual(h, orders) for h in lengths), default=0.0)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from herringbone.analysis.stability.surrogates.free_rotation import turning_freely
 from herringbone.analysis.stability.surrogates.identification import (
     LinearModel,
     Step,
@@ -34,6 +35,8 @@ _GOOD, _ENOUGH = 1e-8, 3.0
 """The order is the smallest whose residual is this small, or at most so many times the least."""
 _LONG = 1e-6
 """Residual up to which the longest trials are the best: short ones tell nothing of slow motions."""
+_LONG_TURNING = 1e-4
+"""The same of a part that turns: its slow motions decide whether the rotation goes on evenly."""
 _FAST, _SLOW, _AIM = 2.2, 0.2, 1.0
 """Largest change of a motion in a step: base steps with more or less than this are changed."""
 _SHORTER, _LONGER = 0.25, 64.0
@@ -184,9 +187,11 @@ class Surrogate:
                 self.why = "its answers to pulses are those of no linear system in continuous time"
             return
         least = min(fit.residual for fit in found)
-        accurate = [fit for fit in found if fit.residual <= max(_LONG, least)]
+        long = _LONG_TURNING if self._lab.turning else _LONG
+        accurate = [fit for fit in found if fit.residual <= max(long, least)]
         best = max(accurate, key=lambda fit: fit.base)
-        self.model, self.base, self._fit_missed = best.model, best.base, best.residual
+        self.base, self._fit_missed = best.base, best.residual
+        self.model = turning_freely(best.model, self._lab.turning)
         if self.orders:
             self._see_what_it_follows(asked)
 

@@ -45,6 +45,7 @@ class Trials:
         self._lab, self._amplitudes = lab, amplitudes
         self._steps = _pulse_steps(len(lab.inputs), len(lab.outputs))
         self._loudness = dict[float, float]()
+        self._runs = dict[float, list[tuple[np.ndarray, np.ndarray]]]()
 
     def affordable(self, h: float, wanted: float) -> float:
         """A longer step as far as its trials may last, the same one if that is not far [s]."""
@@ -81,6 +82,10 @@ class Trials:
         Returns:
             Changes of inputs, order by order, in their own units; changes of outputs.
         """
+        if not orders and not rated:
+            inputs, answers = self.fresh(h)
+            loud = self._loudest(h)
+            return inputs * loud * self._amplitudes, answers * loud
         signals, rest = self._signals(h, orders, self._loudest(h)), self._signals(h, orders, 0.0)
         found, unmoved = (self._lab.run_signals(x, h, rated=rated) for x in (signals, rest))
         return signals - rest, found - unmoved
@@ -131,10 +136,18 @@ class Trials:
         return 1.0 / _LOUD
 
     def _run(self, inputs: np.ndarray, h: float) -> np.ndarray:
-        """(steps, m) outputs on changes (steps, n), in amplitudes; raises Refused."""
+        """(steps, m) outputs on changes (steps, n), in amplitudes; raises Refused.
+
+        A run that began alike before, and was as long, tells them, too: an instance may be dear.
+        """
+        steps, known = len(inputs), self._runs.setdefault(h, [])
+        for before, answers in known:
+            if len(before) >= steps and np.array_equal(before[:steps], inputs):
+                return answers[:steps]
         found = self._lab.run(list(self._lab.start + inputs * self._amplitudes), h)[1:]
         if not np.isfinite(found).all():
             raise Refused("its outputs are not finite")
+        known.append((inputs.copy(), found))
         return found
 
 
