@@ -24,6 +24,7 @@ def results(tmp_path_factory):
         "1.2",
         "--record-step",
         "1e-4",
+        "--no-pictures",
         "-o",
         str(folder),
     ]

@@ -73,6 +73,7 @@ def test_no_step_is_short_enough(monkeypatch):
 def test_an_interrupted_run_is_resumed(tmp_path, monkeypatch, capsys):
     """With the bits, counts and figures of one that was never cut off."""
     options = ["run", "gearbox", "--fuse", "--t-end=0.5", "--record-step=1e-4", "--step=1e-4"]
+    options += ["--no-pictures"]
     assert main([*options, "-o", str(tmp_path / "whole")]) == 0
     entered = InterruptFlag.__enter__
 

@@ -148,6 +148,7 @@ def test_column_of_a_result(result):
         _ = result[name + "x"]
 
 
+@pytest.mark.usefixtures("without_pictures")
 @pytest.mark.parametrize("kind", [str, Path])
 def test_files_are_text_or_path(result, tmp_path, kind):
     result.to_csv(kind(tmp_path / "a.csv"))
@@ -200,9 +201,10 @@ def test_first_lines_pass_a_type_checker(tmp_path):
     (tmp_path / "typo.py").write_text("import herringbone as hb\nhb.rnu\n", encoding="utf-8")
     (tmp_path / "mypy.ini").write_text("[mypy]\n", encoding="utf-8")
     check = [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent"]
-    run = lambda file: subprocess.run(  # noqa: E731
-        [*check, file], capture_output=True, text=True, check=False, cwd=tmp_path
+    run = subprocess.run(
+        [*check, "first.py", "typo.py"], capture_output=True, text=True, check=False, cwd=tmp_path
     )
-    first, typo = run("first.py"), run("typo.py")
-    assert first.returncode == 0, first.stdout
-    assert 'has no attribute "rnu"' in typo.stdout
+    error, found = run.stdout.splitlines()
+    assert error.startswith("typo.py:2: error:")
+    assert 'has no attribute "rnu"' in error
+    assert found.startswith("Found 1 error in 1 file (checked 2 source files)")

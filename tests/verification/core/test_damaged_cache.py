@@ -26,7 +26,7 @@ def hook(event, arguments):
         opened.add(arguments[0])
 sys.addaudithook(hook)
 from herringbone.commands.main import main
-code = main(["run", "test_rig", "--t-end", "0.001", "-o", sys.argv[3]])
+code = main(["run", "test_rig", "--t-end", "0.001", "--no-pictures", "-o", sys.argv[3]])
 listing.write_text("\\n".join(sorted(opened)))
 sys.exit(code)
 """

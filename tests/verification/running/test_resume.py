@@ -125,7 +125,11 @@ def test_nothing_to_resume(tmp_path, capsys, monkeypatch):
 
 
 def test_killed_while_the_report_is_written(tmp_path, monkeypatch):
-    whole = ran(tmp_path / "whole", RIG)
+    """What it was told about pictures holds for the rest of the report, too."""
+    options = [*RIG, "--no-pictures"]
+    drawn = "herringbone.plotting.write_pictures"
+    monkeypatch.setattr(drawn, lambda result, folder: pytest.fail("it draws"))
+    whole = ran(tmp_path / "whole", options)
     folder = tmp_path / "killed"
 
     def die(*arguments):
@@ -134,7 +138,7 @@ def test_killed_while_the_report_is_written(tmp_path, monkeypatch):
     with monkeypatch.context() as patched:
         patched.setattr("herringbone.running.reporting.report.write_csv", die)
         with pytest.raises(Killed):
-            main([*RIG, "-o", str(folder)])
+            main([*options, "-o", str(folder)])
     assert hb.load(folder).outcome.completed
     assert main(["run", "--resume", str(folder)]) == 0
     assert found_in(folder) == whole

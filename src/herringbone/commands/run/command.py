@@ -82,6 +82,7 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
         options.output,
         overwrite=options.overwrite,
         parquet=options.parquet,
+        pictures=not options.no_pictures,
         asked={k: v for k, v in vars(options).items() if k not in _NOT_KEPT},
         system=short_name(options.system),
         resumed=resumed,

@@ -68,6 +68,10 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     )
     sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
     sub.add_argument(
+        "--no-pictures", action="store_true",
+        help="draw none, which takes longer than a short run; 'herringbone plot' draws them later",
+    )  # fmt: skip
+    sub.add_argument(
         "-o", "--output", type=Path,
         help="folder; results/SYSTEM-SCENE if not given, with a number if that holds another run",
     )  # fmt: skip

@@ -83,7 +83,13 @@ def to_resume(folder: Path) -> Resumed | Result:
     store = CheckedStore(folder, run, result, table.rows, table.rows)
     store.reopen()
     try:
-        result = finish_report(store, result, folder, parquet=bool(run.asked.get("parquet")))
+        result = finish_report(
+            store,
+            result,
+            folder,
+            parquet=bool(run.asked.get("parquet")),
+            pictures=not run.asked.get("no_pictures"),
+        )
     finally:
         store.close()
     write_summary(result, folder, store.run, complete=True)

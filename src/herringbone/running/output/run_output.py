@@ -30,6 +30,7 @@ class RunOutput:
         folder: None: `results/SYSTEM-SCENE`.
         overwrite: whatever is there may be replaced.
         parquet: write results.parquet as well.
+        pictures: draw them.
         asked: options of the command, for `--resume`.
         system: what the default folder calls the system.
         resumed: the run in the folder goes on.
@@ -42,6 +43,7 @@ class RunOutput:
     folder: Path | None = None
     overwrite: bool = False
     parquet: bool = False
+    pictures: bool = True
     asked: Mapping[str, Any] = field(default_factory=dict)
     system: str = ""
     resumed: Resumed | None = None
@@ -141,7 +143,9 @@ class RunOutput:
             self._store = store_result(result, self.path, self._run)
         store, self._store = self._store, None
         try:
-            self._written = finish_report(store, result, self.shown, parquet=self.parquet).files
+            self._written = finish_report(
+                store, result, self.shown, parquet=self.parquet, pictures=self.pictures
+            ).files
         except HerringboneError as error:
             raise HerringboneError(
                 f"{error}; all records are in {self.shown}, and --resume writes the rest"

@@ -84,7 +84,9 @@ def store_result(result: Result, folder: Path, run: RunFile) -> Store:
     return store
 
 
-def finish_report(store: Store, result: Result, shown: Path, *, parquet: bool = False) -> Result:
+def finish_report(
+    store: Store, result: Result, shown: Path, *, parquet: bool = False, pictures: bool = True
+) -> Result:
     """Write what follows from rows that are all there.
 
     What takes longest and is least needed comes last: the pictures. The summary is there before.
@@ -94,6 +96,7 @@ def finish_report(store: Store, result: Result, shown: Path, *, parquet: bool = 
         result: of the run; of a long one with its last rows.
         shown: how the folder is called.
         parquet: write results.parquet as well.
+        pictures: draw them.
 
     Returns:
         The result with `files` filled in.
@@ -116,7 +119,7 @@ def finish_report(store: Store, result: Result, shown: Path, *, parquet: bool = 
             write_parquet(stream, table.pieces())
     result = replace(result, files=tuple(str(shown / name) for name in names))
     write_summary(result, folder, store.run)
-    if not has_pictures(result):
+    if not (pictures and has_pictures(result)):
         return result
     from herringbone.plotting import write_pictures  # noqa: PLC0415 (matplotlib: lazy)
 
