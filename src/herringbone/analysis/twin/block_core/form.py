@@ -136,6 +136,7 @@ def equations_of(
         module.core_signals,
         module.core_prepare,
         module.core_laws,
+        module.core_indicators,
         module.core_period,
         module.core_show,
     )
