@@ -119,7 +119,7 @@ def _explicit_stepper(
             ahead = hs * factor(error)
             if error <= 1.0:
                 row = 1 - row
-                bends = bent(b, w, t + done + hs, row)
+                bends = tolerance < np.inf and bent(b, w, t + done + hs, row)
                 if bends and hs > _BENT * math.sqrt(tolerance) * longest_step(b, w):
                     row, error, ahead = 1 - row, np.inf, _NEARER * hs
             if error <= 1.0:
@@ -155,10 +155,11 @@ def _interval_stepper(
         """As `explicit`, with leaps where they can be taken."""
         done = begin
         while done < end:
-            reached = leap(b, w, t, h, done, end, tolerance, degree)
-            if can_leap:  # its laws were called elsewhere
-                w[known] = 0.0
-            done = min(end, reached + shortest)
+            reached = done
+            if can_leap:
+                reached = leap(b, w, t, h, done, end, tolerance, degree)
+                w[known] = 0.0  # its laws were called elsewhere
+            done = min(end, reached + shortest) if tolerance < np.inf else end
             if reached < done:
                 forget(b, w)
                 # room for a leap: a law bends, and may do so twice between the ends of a long step
@@ -196,7 +197,8 @@ def adaptive_stepper(
     Returns:
         step(b, w, t, h, tolerance, degree) -> int: block, work space (`adaptive_work` long), start
         and length of the macro step [s] (h >= 0), tolerance, interface degree; 0, NOT_FINITE,
-        TOO_LONG or TOO_SMALL.
+        TOO_LONG or TOO_SMALL. With a tolerance of infinity all inner steps are as long as the
+        longest one, which `next_step` has to be then, but for what makes them equal.
     """
     n, known = declaration.state_count, Slots.of(declaration.state_count).known
     first_output, outputs = declaration.first_output, len(declaration.node_outputs)
@@ -216,7 +218,7 @@ def adaptive_stepper(
     ) -> int:
         if not h <= LONGEST_STEP:
             return TOO_LONG
-        can_leap = ready(b, w, t)
+        can_leap = ready(b, w, t) and tolerance < np.inf
         expand_inputs(b, w, degree)
         intervals = max(degree, 1)
         status, begin, made = 0, 0.0, True

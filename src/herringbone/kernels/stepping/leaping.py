@@ -19,7 +19,8 @@ class Leaps(NamedTuple):
 
     Attributes:
         leap: (b, w, t, h, begin, end, tolerance, degree) -> float: from t + begin towards t + end
-            inside of a macro step of length h [s]; time since t that it has reached.
+            inside of a macro step of length h [s], if it is ready; time since t that it has
+            reached.
         ready: (b, w, t) -> bool: prepares leaps, once; True if there can be some.
         bent: (b, w, t, row) -> bool: writes indicators of the laws to a row, 0 or 1, after the
             rates; True if one's sign differs in the other row.

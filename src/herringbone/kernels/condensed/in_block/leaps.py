@@ -185,10 +185,7 @@ def leaper(
         b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
         tolerance: float, order: int,
     ) -> float:  # fmt: skip
-        done = begin
-        if w[at.status] != FOUND:
-            return done
-        repeat = period(b)
+        done, repeat = begin, period(b)
         longest = math.sqrt(math.sqrt(_SHARE * tolerance * repeat / w[at.fastest]) * repeat)
         longest = min(lengths[0], longest)
         if end - done < shortest * (1.0 - SAME) or longest < shortest:
