@@ -3,10 +3,10 @@
     python -m campaigns.condensed_steps [COUNT [SEED]]
 
 in tests/; the seed is the last commit's. COUNT speeds and torques (40 if not given) of the test rig
-are drawn for each of three pairs, over 10 ms in communication steps of 0.1 and 1 ms; then a load
-comes in from zero on rigid ground, in communication steps of many lengths. Errors are those of the
-worse group of channels, against Dormand and Prince on the plain equations. They must be at most
-twice the tolerance; where a communication step is no whole number of 10 us they are told alone.
+are drawn for each of three pairs, over 10 ms in communication steps of 0.1 and 1 ms; then teeth
+meet and part in three scenes, in communication steps of many lengths, some of them drawn. Errors
+are those of the worse group of channels, against Dormand and Prince on the plain equations. They
+must be at most twice the tolerance. With COUNT 0 there are the scenes alone.
 """
 
 import random
@@ -34,8 +34,15 @@ SPEEDS, TORQUES = (0.5, 3.0), (0.3, 3.0)
 """Times 1000 r/min and 200 N m."""
 TOLERANCES, MOST, EXACT = (1e-3, 1e-4, 1e-5), 2.0, 1e-10
 WINDOW, STEPS = 0.01, (100, 1000)
-LOADING, WHOLE, OTHERS = 0.04, (10, 20, 30, 50, 100, 1000), (5, 8, 15)
-"""Time [s] in which the load comes in, and communication steps [us]."""
+PARTING = (
+    ("on_ground", "gradual", 0.04),
+    ("test_rig", "separation", 0.01),
+    ("boosted_axle", "engaging", 0.01),
+)
+"""Systems, scenes, and the time [s] over which they are looked at."""
+USUAL, DRAWN, SHORTEST, LONGEST = (5, 8, 10, 15, 20, 30, 50, 100, 1000), 4, 4.0, 150.0
+"""Communication steps [us]: those that are looked at, how many are drawn besides, and between which
+limits."""
 SHIP = Path(__file__).parents[2] / "system_models" / "ship" / "ship_pair.toml"
 
 
@@ -73,7 +80,7 @@ class Box:
             rows.append(block[places])
         return np.array(rows)
 
-    def errors(self, end: float, steps: Sequence[int]) -> Iterator[tuple[int, float, float]]:
+    def errors(self, end: float, steps: Sequence[float]) -> Iterator[tuple[float, float, float]]:
         """Steps [us], tolerance, and what is erred over it."""
         for step in steps:
             times = 1e-6 * step * np.arange(round(end / (1e-6 * step)) + 1)
@@ -91,7 +98,7 @@ def _drawn(count: int, seed: str, folder: Path) -> int:
     missed = 0
     for pair, gear in _pairs(folder).items():
         chance, first = random.Random(f"{seed} {pair}"), None
-        errors: dict[tuple[int, float], list[float]] = {}
+        errors: dict[tuple[float, float], list[float]] = {}
         for _ in range(count):
             values = {SPEED: chance.uniform(*SPEEDS), TORQUE: chance.uniform(*TORQUES)}
             system = prepared("test_rig", "loaded", Wishes(values=values, gear=gear)).system
@@ -107,12 +114,17 @@ def _drawn(count: int, seed: str, folder: Path) -> int:
     return missed
 
 
-def _loading(folder: Path) -> int:
-    box, missed = Box(prepared("on_ground", "gradual", Wishes()).system, folder), 0
-    for step, tolerance, error in box.errors(LOADING, (*WHOLE, *OTHERS)):
-        bad = step in WHOLE and not error <= MOST
-        missed += bad
-        tell(f"on_ground gradual, {step} us, {tolerance:g}: {error:.2g}{': missed' if bad else ''}")
+def _parting(seed: str, folder: Path) -> int:
+    missed = 0
+    for name, scene, end in PARTING:
+        chance = random.Random(f"{seed} {name} {scene}")
+        drawn = [SHORTEST * (LONGEST / SHORTEST) ** chance.random() for _ in range(DRAWN)]
+        box = Box(prepared(name, scene, Wishes()).system, folder)
+        for step, tolerance, error in box.errors(end, (*USUAL, *drawn)):
+            bad = not error <= MOST
+            missed += bad
+            line = f"{name} {scene}, {step:.6g} us, {tolerance:g}: {error:.2g}"
+            tell(line + (": missed" if bad else ""))
     return missed
 
 
@@ -120,7 +132,7 @@ def main(count: int, seed: str) -> int:
     """Run the campaign; how many errors are too large."""
     tell(f"seed {seed}, {count} points: least, middle and largest error over the tolerance")
     with tempfile.TemporaryDirectory() as name:
-        missed = _drawn(count, seed, Path(name)) + _loading(Path(name))
+        missed = _drawn(count, seed, Path(name)) + _parting(seed, Path(name))
     tell(f"{missed} missed")
     return missed
 

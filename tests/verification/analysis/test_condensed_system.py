@@ -6,6 +6,7 @@ from itertools import cycle, islice, pairwise
 
 import numpy as np
 import pytest
+from campaigns.condensed_steps import Box
 from fuzz.campaign import last_commit
 from support.rig_as_one import rig_as_one
 
@@ -122,6 +123,18 @@ def test_teeth_that_part_cost_no_tolerance(times, tolerance, most, rig):
     """
     case = rig(scene="separation")
     assert case.error(case.with_tolerance(tolerance).run(times), case.exact(times)) < most
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("step", [7.3e-6, 15e-6, 1e-3 * (1.0 + 1e-8)])
+def test_a_load_from_zero_costs_no_tolerance(step, tmp_path):
+    """Nor where Runge-Kutta takes what is left of a communication step, and has to see bends.
+
+    A step in which it missed one would err up to 80 times the tolerance.
+    """
+    box = Box(prepared("on_ground", "gradual", Wishes()).system, tmp_path)
+    for _, tolerance, error in box.errors(0.04, [1e6 * step]):
+        assert error < 2.0, tolerance
 
 
 def test_steps_of_any_length(rig):

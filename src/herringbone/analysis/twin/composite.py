@@ -11,11 +11,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 
-from herringbone.analysis.twin.block_core.form import core_form, shown_of, why_not
+from herringbone.analysis.twin.block_core.form import (
+    core_form,
+    directed_by,
+    shown_of,
+    why_not,
+)
 from herringbone.analysis.twin.block_core.source import core_source
 from herringbone.analysis.twin.block_core.steps import (
     LENGTHS,
     ROUGH,
+    TOLERANCE,
     Stepping,
     by_tolerance,
     locals_of,
@@ -104,7 +110,8 @@ def make_composite(
     if steps:
         fed = tuple(to for _, to in places.inputs)
         source += core_source(parts, declaration.first_table, fed, held=held, shown=True)
-        source += remark_source(steps, declaration.index[MICRO_STEP])
+        directed = {declaration.index[full_name(i, v)]: float(i[v]) for i, v in directed_by(parts)}
+        source += remark_source(steps, *declaration.indices(MICRO_STEP, TOLERANCE), directed)
     module = load_generated("composite", source)
     loader = loader_of(declaration, instances, module)
     step, asked = _step_kernel(declaration, module, steps)

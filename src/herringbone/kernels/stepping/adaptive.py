@@ -31,6 +31,11 @@ LONGEST_STEP = 10.0
 _BENT = 6.0
 """Of the longest step, and the root of the tolerance: steps in which a law bends, unseen by the
 estimate; what a step errs there grows with the square of its length."""
+_SHARE = 0.1
+"""Of the tolerance that a step beside leaps may take: dozens of them lie close together where a
+law bends, and their errors add."""
+_NEARER = 0.25
+"""Of a step in which a law bends, that is longer: the next one, from the same start."""
 
 
 def adaptive_work(state_count: int, input_count: int) -> int:
@@ -74,7 +79,13 @@ def _runge_kutta(
 
 
 def _explicit_stepper(
-    rhs: Rhs, declaration: Declaration, following: int, longest_step: Callable, set_inputs: Callable
+    rhs: Rhs,
+    declaration: Declaration,
+    following: int,
+    longest_step: Callable,
+    set_inputs: Callable,
+    bent: Callable,
+    share: float,
 ) -> Callable:
     """Compile explicit(b, w, t, h, begin, end, tolerance, degree, most) -> int.
 
@@ -91,20 +102,26 @@ def _explicit_stepper(
         tolerance: float, degree: int, most: float,
     ) -> int:  # fmt: skip
         """Integrate from t + begin to t + end, inside the macro step, in steps up to `most` [s]."""
-        done, hs = begin, 0.0
+        done, row = begin, 0
         if w[known] == 0.0:
             set_inputs(b, w, degree, begin / h)
             rhs(b, t + begin, w[:n])
             for i in range(n):
                 w[first + i] = w[i]
             w[known] = 1.0
+        bent(b, w, t + begin, row)
         while done < end:
             left = end - done
             count = max(1.0, math.ceil(left / min(b[following], most) - 1e-9))
             hs = left / count
             runge_kutta(b, w, t + done, hs, degree, done / h, hs / h)
-            error = error_of(b, w, hs) / tolerance
+            error = error_of(b, w, hs) / (share * tolerance)
             ahead = hs * factor(error)
+            if error <= 1.0:
+                row = 1 - row
+                bends = tolerance < np.inf and bent(b, w, t + done + hs, row)
+                if bends and hs > _BENT * math.sqrt(tolerance) * longest_step(b, w):
+                    row, error, ahead = 1 - row, np.inf, _NEARER * hs
             if error <= 1.0:
                 done = end if count == 1.0 else done + hs
                 for i in range(n):
@@ -123,16 +140,12 @@ def _explicit_stepper(
 
 
 def _interval_stepper(
-    declaration: Declaration,
-    explicit: Callable,
-    leaps: Leaps,
-    longest_step: Callable,
-    shortest: float,
+    declaration: Declaration, explicit: Callable, leaps: Leaps, shortest: float
 ) -> Callable:
     """Compile interval(b, w, t, h, begin, end, tolerance, degree, can_leap) -> int."""
     known = Slots.of(declaration.state_count).known
     leap, forget = leaps.leap, leaps.forget
-    room = shortest * (1.0 - SAME)
+    room, closer = shortest * (1.0 - SAME), _NEARER * shortest
 
     @inner(declaration.name)
     def interval(
@@ -142,15 +155,15 @@ def _interval_stepper(
         """As `explicit`, with leaps where they can be taken."""
         done = begin
         while done < end:
-            reached = leap(b, w, t, h, done, end, tolerance, degree)
-            if reached > done:
-                w[known] = 0.0
-            done = min(end, reached + shortest)
+            reached = done
+            if can_leap:
+                reached = leap(b, w, t, h, done, end, tolerance, degree)
+                w[known] = 0.0  # its laws were called elsewhere
+            done = min(end, reached + shortest) if tolerance < np.inf else end
             if reached < done:
                 forget(b, w)
-                most = LARGEST
-                if can_leap and end - reached >= room:  # there was room for a leap: a law bends
-                    most = _BENT * math.sqrt(tolerance) * longest_step(b, w)
+                # room for a leap: a law bends, and may do so twice between the ends of a long step
+                most = closer if can_leap and end - reached >= room else LARGEST
                 status = explicit(b, w, t, h, reached, done, tolerance, degree, most)
                 if status != 0:
                     return status
@@ -184,15 +197,18 @@ def adaptive_stepper(
     Returns:
         step(b, w, t, h, tolerance, degree) -> int: block, work space (`adaptive_work` long), start
         and length of the macro step [s] (h >= 0), tolerance, interface degree; 0, NOT_FINITE,
-        TOO_LONG or TOO_SMALL.
+        TOO_LONG or TOO_SMALL. With a tolerance of infinity all inner steps are as long as the
+        longest one, which `next_step` has to be then, but for what makes them equal.
     """
     n, known = declaration.state_count, Slots.of(declaration.state_count).known
     first_output, outputs = declaration.first_output, len(declaration.node_outputs)
     expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, known + 1)
     following = declaration.index[next_step]
-    explicit = _explicit_stepper(rhs, declaration, following, longest_step, set_inputs)
     leaps = core(set_inputs) if core else no_leaps(out, declaration.name)
-    interval = _interval_stepper(declaration, explicit, leaps, longest_step, shortest)
+    explicit = _explicit_stepper(
+        rhs, declaration, following, longest_step, set_inputs, leaps.bent, _SHARE if core else 1.0
+    )
+    interval = _interval_stepper(declaration, explicit, leaps, shortest)
     ready, show = leaps.ready, leaps.show
     kept, kept_count = (declaration.first_kept, declaration.kept) if later else (0, 0)
 
@@ -202,7 +218,7 @@ def adaptive_stepper(
     ) -> int:
         if not h <= LONGEST_STEP:
             return TOO_LONG
-        can_leap = ready(b, w, t)
+        can_leap = ready(b, w, t) and tolerance < np.inf
         expand_inputs(b, w, degree)
         intervals = max(degree, 1)
         status, begin, made = 0, 0.0, True

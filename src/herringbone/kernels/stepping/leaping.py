@@ -19,8 +19,11 @@ class Leaps(NamedTuple):
 
     Attributes:
         leap: (b, w, t, h, begin, end, tolerance, degree) -> float: from t + begin towards t + end
-            inside of a macro step of length h [s]; time since t that it has reached.
+            inside of a macro step of length h [s], if it is ready; time since t that it has
+            reached.
         ready: (b, w, t) -> bool: prepares leaps, once; True if there can be some.
+        bent: (b, w, t, row) -> bool: writes indicators of the laws to a row, 0 or 1, after the
+            rates; True if one's sign differs in the other row.
         forget: (b, w): the states are to be others than it left.
         show: (b, w, t, how) -> bool: writes states and outputs at the end of a step; False if they
             are made but when they are asked for.
@@ -28,6 +31,7 @@ class Leaps(NamedTuple):
 
     leap: Callable
     ready: Callable
+    bent: Callable
     forget: Callable
     show: Callable
 
@@ -40,7 +44,7 @@ def no_leaps(out: Callable, owner: str) -> Leaps:
         out(b, t)
         return True
 
-    return Leaps(_stay, _idle, _nothing, show)
+    return Leaps(_stay, _idle, _straight, _nothing, show)
 
 
 @kernel
@@ -53,6 +57,11 @@ def _stay(
 
 @kernel
 def _idle(b: np.ndarray, w: np.ndarray, t: float) -> bool:
+    return False
+
+
+@kernel
+def _straight(b: np.ndarray, w: np.ndarray, t: float, row: int) -> bool:
     return False
 
 

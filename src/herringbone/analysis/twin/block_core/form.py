@@ -13,6 +13,8 @@ from herringbone.kernels.condensed.in_block.form import Equations, Form, Shown
 from herringbone.kernels.signals import STRIDE
 
 DEGREE = 4
+_MOVED = 1e-2
+"""Change of a parameter by which is seen what follows from it; any does."""
 _NOTHING = Shown()
 
 
@@ -61,9 +63,7 @@ def core_form(
         of_tangent += [len(stiff) + unknown.index(v) for v in own.stiff]
         stiff += [value + v for v in unknown]
         directions.append(_among(own.directions(block), at, arguments))
-        for rows in (own.sharp or own.directions, own.fine):
-            if rows is not None:
-                sharp.append(_among(rows(block), at, arguments))
+        sharp += [_among(rows, at, arguments) for rows in _sharp(own, block)]
         mean.append(own.mean(block))
         value, at = value + len(own.values), at + len(own.arguments)
     nodes = np.array(LOBATTO[DEGREE])
@@ -87,6 +87,25 @@ def core_form(
         rough=rough,
         shown=shown,
     )
+
+
+def _sharp(own: Laws, block: np.ndarray) -> list[np.ndarray]:
+    """Directions of a part's laws along which arguments are taken at all nodes."""
+    return [rows(block) for rows in (own.sharp or own.directions, own.fine) if rows is not None]
+
+
+def directed_by(parts: Parts) -> list[tuple[Instance, str]]:
+    """Parameters that the sharp directions of a form follow from, and whose they are."""
+    found = []
+    for p, own in laws_of_parts(parts).items():
+        instance = parts.instances[p]
+        declaration, here = instance.component.declaration, _sharp(own, instance.block)
+        for v in declaration.parameters:
+            block = instance.block.copy()
+            block[declaration.index[v.name]] += _MOVED * (1.0 + block[declaration.index[v.name]])
+            if not all(map(np.array_equal, here, _sharp(own, block))):
+                found.append((instance, v.name))
+    return found
 
 
 def parabola_since_end(nodes: np.ndarray) -> np.ndarray:
@@ -136,6 +155,7 @@ def equations_of(
         module.core_signals,
         module.core_prepare,
         module.core_laws,
+        module.core_indicators,
         module.core_period,
         module.core_show,
     )

@@ -5,6 +5,7 @@ values, the sources' signals, then the inputs, are given in u
 core_signals(b, t, to): of the sources
 core_prepare(b): before the laws
 core_laws(b, t, z, f, k, e): of all parts, one behind the other
+core_indicators(b, t, z, f, k, e): arguments, and the laws there, after the rates
 core_period(b): shortest of the meshes [s]
 core_show(b, u, t, need, bent): outputs that are not affine, see `in_block.form.Equations`
 """
@@ -58,6 +59,14 @@ def core_laws(
 ) -> None:
     blocks = b[{first}:]
 {evaluate}    return
+
+
+@kernel
+def core_indicators(
+    b: np.ndarray, t: float, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray
+) -> None:
+    blocks = b[{first}:]
+{gather}    core_laws(b, t, z, f, k, e)
 
 
 @kernel

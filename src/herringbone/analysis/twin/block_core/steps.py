@@ -1,7 +1,7 @@
 """Steps of a system as one component that follow a tolerance: condensed core, and Runge-Kutta."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from types import ModuleType
@@ -33,6 +33,7 @@ from herringbone.kernels.stepping.adaptive import (
     FIRST,
     LARGEST,
     LONGEST_STEP,
+    TOO_SMALL,
     adaptive_stepper,
     adaptive_work,
 )
@@ -59,14 +60,28 @@ _TOO_LONG = Remark(
     "shorter, or 0, by which inner steps follow the tolerance",
     warning=True,
 )
+_OTHER_PAIR = Remark(
+    "parameters are not those at export by which the condensed core knows what to look at closely, "
+    "as teeth, base radii and helix of a gear pair: it may err ten times the tolerance; export "
+    "with --gear or --set, or set micro_step"
+)
+_APART = 10.0
+"""Relative difference of parameters by which directions err, over the tolerance: errors are 7e-3
+where they differ by 0.2, and such a difference moves them by a third of the tolerance."""
 _LIMIT, _DOUBTFUL = 2.785, 0.7
 """Of Runge-Kutta: eigenvalue times step beyond which something grows, be it a decay (Hairer and
 Wanner, Solving Ordinary Differential Equations II, 1996, section IV.2); and a share of it beyond
 which steeper tangents than the mean ones may do."""
 _REMARK = """
 
+DIRECTED_BY = {directed_by}
+DIRECTED_AT = {directed_at}
+
+
 @kernel
 def longest_inner_step(b: np.ndarray, w: np.ndarray) -> float:
+    if b[{micro_step}] > 0.0:
+        return b[{micro_step}]
     if w[{status}] != {found}:
         return {without_form!r}
     return min({longest!r}, {stable!r} / w[{fastest}])
@@ -78,6 +93,12 @@ def remark(b: np.ndarray, w: np.ndarray, which: int, report: np.ndarray) -> int:
     if which == 0:
         return {holds} if w[{status}] < 0.0 and micro_step == 0.0 else 0
     if w[{status}] <= 0.0:
+        return 0
+    if which == 2:
+        for i in range({directed}):
+            value = DIRECTED_AT[i]
+            if abs(b[DIRECTED_BY[i]] - value) > {apart} * b[{tolerance}] * abs(value):
+                return {holds} if micro_step == 0.0 else 0
         return 0
     report[0], report[1] = micro_step, {limit} / w[{fastest}]
     if micro_step > report[1]:
@@ -114,10 +135,12 @@ def locals_of(found: Stepping) -> tuple[list[Variable], int]:
 
 def by_tolerance(module: ModuleType) -> ByTolerance:
     """What the wrapper hands over and tells."""
-    return ByTolerance(TOLERANCE, _EXPERIMENT, (_NOT_LINEAR, _TOO_LONG), module.remark)
+    return ByTolerance(TOLERANCE, _EXPERIMENT, (_NOT_LINEAR, _TOO_LONG, _OTHER_PAIR), module.remark)
 
 
-def remark_source(found: Stepping, micro_step: int) -> str:
+def remark_source(
+    found: Stepping, micro_step: int, tolerance: int, directed: Mapping[int, float]
+) -> str:
     """Source of the kernels of the remarks and of the longest inner step [s].
 
     Native code is kept by this source, so that the micro step that is compiled in stands in it.
@@ -125,13 +148,21 @@ def remark_source(found: Stepping, micro_step: int) -> str:
     Args:
         found: how the system steps.
         micro_step: the parameter's place in the block.
+        tolerance: place of the local.
+        directed: values at export of the parameters that `Form.sharp` follows from, by place.
     """
+    places = dict(directed) or {0: 0.0}  # a kernel has no empty tuples
     return _REMARK.format(
         without_form=float(found.micro_step),
         found=float(FOUND),
         longest=LARGEST,
         stable=_STABLE,
         micro_step=micro_step,
+        tolerance=tolerance,
+        directed=len(directed),
+        directed_by=tuple(places),
+        directed_at=tuple(places.values()),
+        apart=_APART,
         status=found.at.status,
         fastest=found.at.fastest,
         limit=_LIMIT,
@@ -171,8 +202,8 @@ def step_kernel(
 
     core = core_kernels(found.form, at, equations)
     ready = core.ready
-    fixed = steppers.body_stepper(module.system_rhs, module.system_out, d)
     micro_at, tolerance, degree = d.indices(micro_step, TOLERANCE, INTERFACE_DEGREE)
+    following = d.index[NEXT_STEP]
 
     def stepper(decorate: Callable, *, later: bool) -> Callable:
         by_core = adaptive_stepper(
@@ -190,11 +221,13 @@ def step_kernel(
         def step(b, w, t, h):  # noqa: ANN001, ANN202 (the contract of all steps)
             if w[at.status] == 0.0:  # parameters may have changed
                 refresh(b)
-            if b[micro_at] > 0.0:
-                ready(b, w, t)
-                b[kept + HOLDS] = 0.0
-                return fixed(b, w, t, h, b[micro_at], int(b[degree]))
-            return by_core(b, w, t, h, b[tolerance], int(b[degree]))
+            within, micro = b[tolerance], b[micro_at]
+            if micro > 0.0:
+                if not h <= steppers.MOST_MICRO_STEPS * micro:
+                    return steppers.TOO_LONG
+                within, b[following] = np.inf, micro
+            status = by_core(b, w, t, h, within, int(b[degree]))
+            return steppers.NOT_FINITE if status == TOO_SMALL and micro > 0.0 else status
 
         return step
 

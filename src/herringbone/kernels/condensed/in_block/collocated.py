@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.jit import inner, outside
 from herringbone.kernels.compiling.views import integers, matrix
 from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.collocation import residuals, spread
@@ -67,16 +67,19 @@ def iteration(form: Form, at: WorkPlaces, equations: Equations) -> Callable:
 
 
 def doubts(form: Form, at: WorkPlaces, owner: str) -> tuple[Callable, Callable]:
-    """Compile bends(w) -> float and rough(w) -> float, of a step that is solved."""
+    """Compile bends(w, changes) -> float and rough(w) -> float, of a step that is solved."""
     degree, count, kinks, values = form.degree, form.degree + 1, form.kinks, form.values
     stiff, signals, nodes = np.array(form.stiff), form.signals, form.nodes
     top, unknowns = form.fit[-1], len(form.stiff)
     top_size = np.abs(top).sum()
 
-    @inner(owner)
-    def bends(w: np.ndarray) -> float:
-        """Share of the step in which no indicator has changed its sign; 1: none does."""
-        for k in range(degree * kinks):
+    @outside(owner)
+    def bends(w: np.ndarray, changes: int) -> float:
+        """Share of the step in which no indicator has changed its sign; 1: none does.
+
+        So many changes are looked at: the indicators' number for each node after the start.
+        """
+        for k in range(changes):
             if w[at.e + k] * w[at.e + kinks + k] < 0.0:
                 return float(nodes[k // kinks])
         return 1.0

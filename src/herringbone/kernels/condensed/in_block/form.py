@@ -119,6 +119,7 @@ class Equations(NamedTuple):
         signals: kernel (b, t, to), writes the signals at a time [s].
         prepare: kernel (b), before the laws.
         laws: kernel (b, t, z, f, k, e), values, tangents and indicators at arguments and a time.
+        indicators: kernel (b, t, z, f, k, e), arguments and laws after `rhs`.
         period: kernel (b), time in which the laws repeat themselves [s].
         show: kernel (b, u, t, need, bent), writes the outputs that are not affine (bent) of parts
             that are needed, by states and outputs in the block and channels at a time [s].
@@ -134,5 +135,6 @@ class Equations(NamedTuple):
     signals: Callable
     prepare: Callable
     laws: Callable
+    indicators: Callable
     period: Callable
     show: Callable

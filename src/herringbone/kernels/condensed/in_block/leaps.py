@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.jit import inner, outside
 from herringbone.kernels.compiling.views import integers, matrix
 from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.in_block.collocated import advancing, doubts, iteration
@@ -177,6 +177,7 @@ def leaper(
     begin_step = step_beginner(form, at, equations, set_inputs)
     iterate, advance = iteration(form, at, equations), advancing(form, at, owner)
     bends, rough = doubts(form, at, owner)
+    changes = form.degree * form.kinks
     lengths, roughest, shortest = np.array(form.lengths), form.rough, float(form.lengths[-1])
 
     @inner(owner)
@@ -184,10 +185,7 @@ def leaper(
         b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
         tolerance: float, order: int,
     ) -> float:  # fmt: skip
-        done = begin
-        if w[at.status] != FOUND:
-            return done
-        repeat = period(b)
+        done, repeat = begin, period(b)
         longest = math.sqrt(math.sqrt(_SHARE * tolerance * repeat / w[at.fastest]) * repeat)
         longest = min(lengths[0], longest)
         if end - done < shortest * (1.0 - SAME) or longest < shortest:
@@ -203,7 +201,7 @@ def leaper(
             begin_step(b, w, place, rung, t + done, length, done / h, length / h, order)
             if not iterate(b, w, place, t + done, length, _CLOSE * tolerance):
                 break
-            straight = bends(w)
+            straight = bends(w, changes)
             if straight < 1.0:
                 longest = straight * length
                 continue
@@ -217,4 +215,17 @@ def leaper(
         return end if end - done < shortest * SAME else done
 
     show = shower(form, at, equations, core.states.settle, core.shown.everything)
-    return Leaps(leap, core.ready, core.states.forget, show)
+    bent = _bend_finder(form, at, equations, bends)
+    return Leaps(leap, core.ready, bent, core.states.forget, show)
+
+
+def _bend_finder(form: Form, at: WorkPlaces, equations: Equations, bends: Callable) -> Callable:
+    """Compile bent(b, w, t, row) -> bool, see `Leaps`."""
+    kinks, indicators = form.kinks, equations.indicators
+
+    @outside(equations.owner)
+    def bent(b: np.ndarray, w: np.ndarray, t: float, row: int) -> bool:
+        indicators(b, t, w[at.z :], w[at.f :], w[at.k :], w[at.e + row * kinks :])
+        return bends(w, kinks) < 1.0
+
+    return bent
