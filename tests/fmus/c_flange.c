@@ -165,4 +165,8 @@ static Status step(Model *m, double t, double h) {
     }
     return OK;
 }
+#ifdef FMI3
+#include "fmi3_shell.h"
+#else
 #include "kinds/fmi2_shell.h"
+#endif

@@ -1,5 +1,5 @@
 /* A housing by a stranger, in C: twelve oscillators of which the two seats of a gear are coupled.
-   FMI 2.0 co-simulation without any header; the test writes the description.
+   FMI 2.0 co-simulation without any header, or 3.0 with FMI3; the test writes the description.
    Value references: force 0 ... 11, position 12 ... 23, velocity 24 ... 35.
    Macros make it wrong, or undamped, in one way each. */
 #include <stddef.h>
@@ -94,6 +94,23 @@ static void show(Housing *housing) {
     }
 }
 
+static Status step(Housing *housing, double t, double h) {
+    int steps = (int)(h / LONGEST) + 1;
+    for (int late = LATE; late > 0; --late)
+        memcpy(housing->f[late], housing->f[late - 1], sizeof housing->f[0]);
+    memcpy(housing->f[0], housing->real, sizeof housing->f[0]);
+    for (int n = 0; n < steps; ++n) advance(housing, h / steps);
+    show(housing);
+    return OK;
+}
+
+#ifdef FMI3
+enum { REALS = 3 * DOFS, INPUTS = DOFS };
+typedef Housing Model;
+static void reset(Model *housing) { memset(housing, 0, sizeof(Housing)); }
+static void evaluate(Model *housing) {}
+#include "fmi3_shell.h"
+#else
 EXPORT Component fmi2Instantiate(const char *name, int kind, const char *guid, const char *resources,
                                  const void *callbacks, int visible, int logging) {
     return calloc(1, sizeof(Housing));
@@ -118,14 +135,7 @@ EXPORT Status fmi2GetReal(Component c, const unsigned *vr, size_t n, double *val
     return OK;
 }
 EXPORT Status fmi2DoStep(Component c, double t, double h, int no_rollback) {
-    Housing *housing = c;
-    int steps = (int)(h / LONGEST) + 1;
-    for (int late = LATE; late > 0; --late)
-        memcpy(housing->f[late], housing->f[late - 1], sizeof housing->f[0]);
-    memcpy(housing->f[0], housing->real, sizeof housing->f[0]);
-    for (int n = 0; n < steps; ++n) advance(housing, h / steps);
-    show(housing);
-    return OK;
+    return step(c, t, h);
 }
 EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }
 EXPORT const char *fmi2GetVersion(void) { return "2.0"; }
@@ -158,3 +168,4 @@ EXPORT Status fmi2FreeFMUstate(Component c, void **state) {
 #define WITH_STATES
 #endif
 #include "absent.h"
+#endif

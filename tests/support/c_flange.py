@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from support.c_fmu import compiled_fmu
+from support.fmi3_description import c_part
 
 SOURCE = Path(__file__).parents[1] / "fmus" / "c_flange.c"
 _UNITS = {"tau": "N.m", "drive": "N.m", "phi": "rad", "w": "rad/s"}
@@ -54,9 +54,11 @@ def description(part, *, units=None, without=(), starts=None, saves=True) -> str
 """
 
 
-def c_flange(folder: Path, part: str, fault: str = "NONE", *more: str, **described) -> Path:
+def c_flange(
+    folder: Path, part: str, fault: str = "NONE", *more: str, fmi: int = 2, **described
+) -> Path:
     """The FMU of a part with a fault, and more macros, in a folder of its own."""
     place = folder / f"{part}_{fault}".lower()
     place.mkdir()
     defines = (f"PART={part}", f"FAULT={fault}", *more)
-    return compiled_fmu(SOURCE, description(part, **described), place, defines)
+    return c_part(SOURCE, description(part, **described), place, defines, fmi=fmi)

@@ -4,7 +4,7 @@ from itertools import product
 from pathlib import Path
 
 from herringbone.core.declaring.roles import HALVES
-from support.c_fmu import compiled_fmu
+from support.fmi3_description import c_part
 
 SOURCE = Path(__file__).parents[1] / "fmus" / "c_housing.c"
 DOFS = list(product(HALVES, "xyz"))
@@ -43,6 +43,8 @@ def description(*, units=None, without=(), saves=False) -> str:
 """
 
 
-def c_housing_fmu(folder: Path, defines: tuple[str, ...] = (), **described) -> Path:
+def c_housing_fmu(
+    folder: Path, defines: tuple[str, ...] = (), *, fmi: int = 2, **described
+) -> Path:
     """The FMU with macros that are set, in a folder."""
-    return compiled_fmu(SOURCE, description(**described), folder, defines)
+    return c_part(SOURCE, description(**described), folder, defines, fmi=fmi)

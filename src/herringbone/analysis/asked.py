@@ -50,6 +50,12 @@ def of_both_gears(result: Result, part: str, quantity: Quantity) -> tuple[float,
     return None if pinion is None or wheel is None else (pinion, wheel)
 
 
+def has_own(result: Result, part: str, quantity: Quantity) -> bool:
+    """True if a part read a file of the user's for a quantity, not the one that ships."""
+    column = result.info.anatomy.column(part, quantity)
+    return Path(result.info.resources.get(column or "", "")).is_absolute()
+
+
 def resource_file(result: Result, part: str, quantity: Quantity) -> Path | None:
     """File that a part read for a quantity; None if that is not known."""
     anatomy = result.info.anatomy

@@ -77,10 +77,14 @@ def run(options: argparse.Namespace) -> int:
         HerringboneError: something about the options is wrong, or the export fails.
     """
     _check(options)
+    made = ""
     if options.output:
         check_writable(options.output.parent, options.output)
+        made = "" if options.output.parent.exists() else str(options.output.parent)
     for line in (_one_fmu if options.as_fmu else _ssp_file)(options):
         show(line)
+    if made:
+        show(f"{made} was made for it: there was no such folder")
     return 0
 
 

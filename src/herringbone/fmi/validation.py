@@ -7,7 +7,7 @@ import re
 import zipfile
 from pathlib import Path
 
-from fmpy.model_description import ValidationError, read_model_description
+from fmpy.model_description import read_model_description
 
 _PART = r"[A-Za-z_][A-Za-z_0-9]*(\[[0-9]+(,[0-9]+)*\])?"
 _PATH = rf"{_PART}(\.{_PART})*"
@@ -26,27 +26,21 @@ def validation_problems(path: str | Path) -> list[str]:
     Args:
         path: the FMU.
     """
+    file = str(path)
+    if _is_sound(file):
+        return []
     from fmpy.validation import validate_fmu  # noqa: PLC0415 (lazy)
 
-    file = str(path)
-    if not _has_plain_names(file):
-        return list(validate_fmu(file))
-    try:
-        read_model_description(file, validate_model_structure=True)
-    except ValidationError as error:
-        return list(error.problems)
-    except Exception as error:  # fmpy raises bare Exception for every defect of the XML
-        return [str(error)]
-    return []
+    return list(validate_fmu(file))
 
 
-def _has_plain_names(file: str) -> bool:
-    """True if neither variables nor files have names that fmpy is to look at."""
+def _is_sound(file: str) -> bool:
+    """True if fmpy finds nothing, and names are plain; where that is not so, it is asked whole."""
     try:
         with zipfile.ZipFile(file) as archive:
             if any("\\" in item.orig_filename for item in archive.filelist):
                 return False
-        variables = read_model_description(file, validate=False).modelVariables
-    except Exception:  # of whatever kind it is, fmpy is asked what is wrong
+        model = read_model_description(file, validate_model_structure=True)
+    except Exception:  # fmpy raises bare Exception for every defect of the XML
         return False
-    return all(is_plain(variable.name) for variable in variables)
+    return all(is_plain(variable.name) for variable in model.modelVariables)

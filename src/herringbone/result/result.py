@@ -14,8 +14,8 @@ from herringbone.core import Outcome, ParameterError
 from herringbone.core.anatomy import Anatomy
 from herringbone.core.declaring.roles import Role
 from herringbone.core.facts import Facts
-from herringbone.core.names import matches_any, shown
-from herringbone.core.places.part_path import PartPath, endings
+from herringbone.core.names import shown
+from herringbone.core.places.part_path import PartPath, find_columns
 from herringbone.result.budget import BudgetRow
 from herringbone.result.folder.writing import replacing
 from herringbone.result.run_info import RunInfo
@@ -79,17 +79,24 @@ class Result(Facts):
         Raises:
             ParameterError: a pattern matches nothing.
         """
-        names = self._called()
-        for pattern in patterns:
-            if not any(matches_any(called, [pattern]) for called in names.values()):
+        every = self._shown
+        found = find_columns(self.parts, every, patterns)
+        for pattern, own in found.items():
+            if not own:
                 hint = self._hint(pattern, self.channels)
                 raise ParameterError(f"no column matches '{pattern}'; {hint}")
-        return [c for c, called in names.items() if matches_any(called, patterns)]
+        meant = {name for own in found.values() for name in own}
+        return [name for name in every if name in meant]
 
-    def _called(self) -> dict[str, tuple[str, ...]]:
-        """The names by which each column but the time may be called."""
-        parts = [PartPath(part) for part in self.info.model]
-        return {c: endings(parts, c) for c in self.data.columns if c != TIME}
+    @property
+    def _shown(self) -> list[str]:
+        """All columns but the time."""
+        return [name for name in self.data.columns if name != TIME]
+
+    @property
+    def parts(self) -> tuple[PartPath, ...]:
+        """Of the system."""
+        return tuple(PartPath(part) for part in self.info.model)
 
     def column(self, name: str) -> str:
         """The column of that name, or the only one whose name ends so, after a dot.
@@ -102,8 +109,8 @@ class Result(Facts):
         """
         if name in self.data:
             return name
-        found = [column for column, called in self._called().items() if name in called]
-        found = found or [column for column in self._called() if column.endswith(f".{name}")]
+        found = find_columns(self.parts, self._shown, [name])[name]
+        found = found or [column for column in self._shown if column.endswith(f".{name}")]
         if len(found) > 1:
             more = f" or {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
             meant = " or ".join(found[:_SHOWN]) + more

@@ -10,6 +10,9 @@ import pytest
 from support.result import SPEED, make_foreign_result, make_result
 
 from herringbone.analysis.figures.settling import unsettled
+from herringbone.core.declaring.roles import Quantity, Role
+
+DEVIATIONS, TEETH = Quantity.TOOTH_DEVIATIONS, {"pinion": 27.0, "wheel": 81.0}
 
 
 def decaying(rate, first=0.0):
@@ -42,6 +45,28 @@ def test_much_is_told_in_plain_digits():
     force = np.where(time < 0.75, 0.01, 1.0) * result.data["a.f"]
     (line,) = unsettled(replace(result, data=result.data.assign(**{"a.f": force})))
     assert re.search(r"changes by \d+ % of", line), line
+
+
+@pytest.mark.parametrize(("quarter", "all_met"), [(0.15, False), (0.19, True)])
+def test_teeth_that_differ_meet_again_after_long(tmp_path, quarter, all_met):
+    """27 and 81 teeth at 450 Hz have all met after 81 / 450 = 0.18 s: longer quarters have all."""
+    result = make_result()
+    time = np.linspace(0.0, 4.0 * quarter, 8001)
+    old = result.data["time"].to_numpy()
+    data = {n: np.interp(time, old, result.data[n].to_numpy(), period=0.2) for n in result.data}
+    data |= {"time": time}
+    (force,) = [n for n in data if n.endswith("mesh_left.force")]
+    data[force] = np.where(time < 3.0 * quarter, 0.0, 1e5 * np.sin(900.0 * np.pi * time))
+    column = result.info.anatomy.column(result.parts_with(Role.GEAR_PAIR)[0], DEVIATIONS)
+    teeth = {f"gearbox.gear_mesh.{gear}.number_of_teeth": z for gear, z in TEETH.items()}
+    parameters = {**result.info.parameters, **teeth}
+    for file, told in (("none.csv", False), (str(tmp_path / "mine.csv"), not all_met)):
+        resources = {**result.info.resources, column: file}
+        info = replace(result.info, resources=resources, parameters=parameters)
+        found = replace(result, data=pd.DataFrame(data), info=info, channels={"force": (force,)})
+        (line,) = unsettled(found)
+        assert line.endswith("use a longer --t-end") == (not told)
+        assert ("all have met after 81 mesh periods only, 0.18 s" in line) == told
 
 
 def turning(share, *, ripple=0.0, unit=""):

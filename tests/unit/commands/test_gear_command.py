@@ -69,7 +69,7 @@ def test_json_has_the_figures_of_the_table_in_si_units(tmp_path, capsys):
 
 def test_rexs_with_torque_and_halves(tmp_path):
     text = gear(STAGE, tmp_path, method="slices", torque=567.0, halves=2)
-    assert "Forces at 567 N m" in text
+    assert "Forces at 567 N m of the pinion (pair   one half)" in text
     assert text.endswith(f"In a gearbox: herringbone run SYSTEM --gear {STAGE}")
     assert "In a gearbox" not in gear(STAGE, tmp_path / "single", method="slices")
 
@@ -125,8 +125,12 @@ def thin(tmp_path):
 
 def test_table_is_that_of_the_method(thin, tmp_path):
     """The mesh that carries the load on the flanks is the one of the table."""
-    gear(thin, tmp_path)
+    text = gear(thin, tmp_path)
     job = read_gear_file(thin)
+    torque = 100e3 * 3e-3 * 30 * 1e-3  # face width 3 mm, reference radius 30 mm
+    assert (
+        f"Forces at {torque:g} N m of the pinion: 100 N/mm of face width, as no torque is given"
+    ) in text
     expected = table_text(stiffness_for(job))
     assert (tmp_path / "mesh_stiffness.csv").read_text(encoding="utf-8") == expected
 

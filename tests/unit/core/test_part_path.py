@@ -8,6 +8,7 @@ from herringbone.core import ParameterError, StructureError
 from herringbone.core.places.part_path import (
     PartPath,
     endings,
+    find_columns,
     find_part,
     flat_name,
     in_groups,
@@ -93,3 +94,25 @@ def test_a_variable_may_belong_to_two_parts():
     with pytest.raises(StructureError, match=r"a variable of gear or of gear\.pinion; write more"):
         split_variable(parts, "gear.pinion.w", "it")
     assert split_variable(parts, "x.gear.pinion.w", "it") == ("x.gear", "pinion.w")
+
+
+COLUMNS = (
+    "a.b.gear.pinion.w", "a.b.gear.wheel.w", "motor.torque", "motor.flange.w", "gear.motor.torque",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("pattern", "meant"),
+    [
+        ("gear.pinion.w", ["a.b.gear.pinion.w"]),
+        ("gear.*.w", ["a.b.gear.pinion.w", "a.b.gear.wheel.w"]),
+        ("motor.torque", ["motor.torque"]),
+        ("pinion.w", ["a.b.gear.pinion.w"]),
+        ("torque", []),
+        ("inion.w", []),
+    ],
+)
+def test_what_a_pattern_means(pattern, meant):
+    """Whole variables of parts first, then endings of their names, which begin after a dot."""
+    assert find_columns(PARTS, COLUMNS, [pattern]) == {pattern: meant}
+    assert in_groups(PARTS, COLUMNS, {"group": [pattern]}) == ({"group": meant} if meant else {})

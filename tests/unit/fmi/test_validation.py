@@ -75,4 +75,4 @@ def test_plain_names_are_not_parsed(python_fmus, monkeypatch):
         lambda file, **how: asked.append(how) or ModelDescription(modelVariables=[]),
     )
     assert validation_problems(python_fmus["shaft_coupling"]) == []
-    assert asked == [{"validate": False}, {"validate_model_structure": True}]
+    assert asked == [{"validate_model_structure": True}]

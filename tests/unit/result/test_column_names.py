@@ -20,6 +20,12 @@ def test_any_ending(result, name):
     assert result.column(name) == "gearbox.gear_mesh.mesh_left.force"
 
 
+def test_patterns_are_endings_too(result):
+    """What `record=` of a run takes, `columns` finds in its result."""
+    assert result.columns("mesh_left.force") == ["gearbox.gear_mesh.mesh_left.force"]
+    assert result.columns("mesh_left.*") == result.columns("gear_mesh.mesh_left.*")
+
+
 def test_a_name_ends_at_a_dot(result):
     with pytest.raises(ParameterError, match=r"no column 'left\.force'"):
         result["left.force"]

@@ -99,6 +99,18 @@ def test_right_ones_hold(tmp_path, part, saves):
     assert repeats.verdict is (Verdict.HOLDS if saves else Verdict.REMARK)
 
 
+@pytest.mark.parametrize("part", ["ROTOR", "SLIDER", "COUPLING"])
+def test_parts_of_fmi3_are_found_as_those_of_fmi2(tmp_path, part):
+    """The same C source in both versions: line by line the same."""
+    found = []
+    for fmi in (2, 3):
+        place = tmp_path / str(fmi)
+        place.mkdir()
+        found.append(findings(c_flange(place, part, fmi=fmi), ROLE.get(part, Role.LOAD)))
+    assert found[1] == found[0]
+    assert failing(found[1]) == []
+
+
 @pytest.mark.parametrize("part", ["SHAFT", "SLIDER"])
 def test_own_speed(tmp_path, part):
     """Turning at the start, a part is tested at its own speed, also if its port says no speed."""

@@ -15,12 +15,11 @@ Rows are sorted by their value, the largest first, then those without.
 """
 
 from collections.abc import Iterable, Iterator
-from pathlib import Path
 
 import numpy as np
 
 from herringbone.analysis.accuracy.beyond import share_beyond
-from herringbone.analysis.asked import group, resource_file, signal
+from herringbone.analysis.asked import group, has_own, resource_file, signal
 from herringbone.analysis.figures.modal_response import housing_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.stability.recommendation import (
@@ -181,9 +180,9 @@ def _housings(result: Result) -> Iterator[BudgetRow]:
 def _assumptions(result: Result) -> Iterator[BudgetRow]:
     for gear in result.parts_with(Role.GEAR_PAIR):
         given = {
-            kind: Path(result.info.resources.get(column or "", "")).is_absolute()
+            kind: has_own(result, gear, kind)
             for kind in (Quantity.TOOTH_ERRORS, Quantity.TOOTH_DEVIATIONS)
-            if (column := result.info.anatomy.column(gear, kind)) in result.info.resources
+            if result.info.anatomy.column(gear, kind) in result.info.resources
         }
         if given and not given.get(Quantity.TOOTH_DEVIATIONS):
             how = "none are given: perfect teeth"

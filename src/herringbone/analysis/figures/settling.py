@@ -9,6 +9,7 @@ import numpy as np
 
 from herringbone.analysis.accuracy.apart import groups_of
 from herringbone.analysis.asked import signal
+from herringbone.analysis.figures.hunting import longest_hunt
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.spectra import hann_weight
 from herringbone.core.declaring.roles import Quantity, Role
@@ -50,10 +51,24 @@ def unsettled(result: Result) -> list[str]:
         return []
     percent = 100.0 * change
     shown = f"{percent:.0f}" if 10.0 <= percent < 1e6 else f"{percent:.2g}"
-    return [
-        f"not settled: {name.replace('_', ' ')} changes by {shown} % of its "
-        "alternating part from the third to the last quarter of the run; use a longer --t-end"
-    ]
+    said = (
+        f"not settled: {name.replace('_', ' ')} changes by {shown} % of its alternating part from "
+        "the third to the last quarter of the run"
+    )
+    return [f"{said}; {_advice(result)}"]
+
+
+def _advice(result: Result) -> str:
+    """What shows a settled motion: a longer run, or all teeth where each quarter has others."""
+    hunt, time = longest_hunt(result), result.data[TIME].to_numpy()
+    if hunt is None or hunt[1] <= 0.25 * (time[-1] - time[0]):
+        return "use a longer --t-end"
+    meshes, seconds = hunt
+    return (
+        f"its teeth differ, and all have met after {meshes} mesh periods only, {seconds:.3g} s: "
+        "until then each quarter has others, and levels are those of the teeth that met; "
+        f"'herringbone steady {result.info.system}' has the levels of all"
+    )
 
 
 def moving_speed(result: Result) -> str:

@@ -3,11 +3,12 @@
 from collections.abc import Iterator
 
 from herringbone.analysis.anatomy import anatomy
-from herringbone.analysis.twin.fused.core import Core, endings_of
+from herringbone.analysis.twin.fused.core import Core
 from herringbone.core import ParameterError
 from herringbone.core.anatomy import Anatomy
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
-from herringbone.core.names import matches_any, shown
+from herringbone.core.names import shown
+from herringbone.core.places.part_path import find_columns
 
 _AT_PORTS = {
     "bearing force": (Role.BEARING, PortKind.JOURNAL, "f_?"),
@@ -37,8 +38,9 @@ def asked_for(core: Core, name: str) -> list[str]:
     if found := groups.get(words.replace(" ", "_"), groups.get(name, [])):
         return list(found)
     patterns = list(_patterns(known, words)) or [name]
-    if found := [n for n in core.names if matches_any(endings_of(n), patterns)]:
-        return found
+    meant = find_columns(core.twin.system.paths, core.names, patterns).values()
+    if wanted := set().union(*meant):
+        return [output for output in core.names if output in wanted]
     raise ParameterError(
         f"ask: {core.twin.system.name} has no output {shown(name, 60)}; ask for groups of channels "
         f"({', '.join(groups)}), quantities ({', '.join(NAMES)}), or patterns of outputs"

@@ -8,10 +8,9 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.steady.outputs import Harmonics, level_of
-from herringbone.analysis.twin.fused.core import endings_of
 from herringbone.core import ParameterError
 from herringbone.core.facts import Facts
-from herringbone.core.names import matches_any
+from herringbone.core.places.part_path import PartPath, find_columns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -74,6 +73,11 @@ class PeriodicMotion(Facts):
 
     @property
     @abstractmethod
+    def parts(self) -> tuple[PartPath, ...]:
+        """Of the system."""
+
+    @property
+    @abstractmethod
     def columns(self) -> tuple[str, ...]:
         """All outputs."""
 
@@ -123,7 +127,7 @@ class PeriodicMotion(Facts):
             own = (
                 self.channels.get(name)
                 or whole
-                or [c for c in self.columns if matches_any(endings_of(c), [name])]
+                or find_columns(self.parts, self.columns, [name])[name]
             )
             if not own:
                 groups = ", ".join(self.channels)

@@ -20,6 +20,7 @@ from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.places.part_path import PartPath
 
 BALANCE, SHOOTING, MARCH = "harmonic balance", "shooting", "march"
 """What may have found a state."""
@@ -62,6 +63,11 @@ class SteadyState(PeriodicMotion):
     def system_name(self) -> str:
         """Of the system."""
         return self.structure.system.name
+
+    @property
+    def parts(self) -> tuple[PartPath, ...]:
+        """Of the system."""
+        return self.structure.system.paths
 
     @property
     def converged(self) -> bool:

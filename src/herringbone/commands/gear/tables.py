@@ -11,6 +11,7 @@ from herringbone.gears.job import GearJob
 from herringbone.gears.load.figures import Loaded
 from herringbone.gears.load.impact import impact_at
 from herringbone.gears.pair_values import USUAL_BACKLASH, backlash_of
+from herringbone.gears.stiffness.calibration import FULL_SPECIFIC_LOAD
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 
 _RPM = math.pi / 30.0
@@ -157,7 +158,9 @@ def _forces(job: GearJob) -> list[_Row]:
     forces = job.pair.tooth_forces(torque)
     columns = (forces.half,) if job.pair.halves == 1 else (forces.pair, forces.half)
     heading = "" if job.pair.halves == 1 else " (pair   one half)"
-    return [(f"Forces at {torque:.6g} N m of the pinion{heading}", "")] + [
+    origin = f": {1e-3 * FULL_SPECIFIC_LOAD:g} N/mm of face width, as no torque is given"
+    chosen = origin if job.torque is None else ""
+    return [(f"Forces at {torque:.6g} N m of the pinion{chosen}{heading}", "")] + [
         (label, f"{_pair([getattr(column, name) for column in columns], 1.0, 1)} N")
         for name, label in _FORCES.items()
     ]

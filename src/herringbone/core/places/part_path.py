@@ -113,6 +113,35 @@ def endings(parts: Iterable[PartPath], column: str) -> tuple[str, ...]:
     return tuple(names)
 
 
+def find_columns(
+    parts: Iterable[PartPath], columns: Sequence[str], patterns: Iterable[str]
+) -> dict[str, list[str]]:
+    """Columns that each pattern (`*`, `?`) means, in their order; none where it means none.
+
+    Whole names of variables, their part by any ending, come before endings of variables' names:
+    `motor.torque` is what a part `motor` shows, and `pinion.w` what any part shows at its `pinion`.
+    A last word alone means nothing.
+
+    Args:
+        parts: whose variables they are.
+        columns: `part.variable`.
+        patterns: of names.
+    """
+    known = tuple(parts)
+    called = {name: endings(known, name) for name in columns}
+    found = {}
+    for pattern in patterns:
+        by_parts = [name for name, own in called.items() if matches_any(own, [pattern])]
+        found[pattern] = by_parts or [n for n in columns if matches_any(_shortened(n), [pattern])]
+    return found
+
+
+def _shortened(column: str) -> tuple[str, ...]:
+    """A name, and what is left of it after each of its dots but the last."""
+    words = column.split(".")
+    return tuple(".".join(words[k:]) for k in range(len(words) - 1))
+
+
 def in_groups(
     parts: Sequence[PartPath], columns: Sequence[str], groups: Mapping[str, Sequence[str]]
 ) -> dict[str, list[str]]:
@@ -123,9 +152,10 @@ def in_groups(
         columns: `part.variable`.
         groups: patterns by group.
     """
-    called = {name: endings(parts, name) for name in columns}
+    wanted = dict.fromkeys(pattern for patterns in groups.values() for pattern in patterns)
+    meant_by = find_columns(parts, columns, wanted)
     found = {
-        group: [name for name, own in called.items() if matches_any(own, patterns)]
+        group: {name for pattern in patterns for name in meant_by[pattern]}
         for group, patterns in groups.items()
     }
-    return {group: names for group, names in found.items() if names}
+    return {group: [n for n in columns if n in names] for group, names in found.items() if names}

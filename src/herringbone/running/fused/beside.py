@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from herringbone.analysis.twin.core_part.part import CorePart
-from herringbone.analysis.twin.fused.core import Core, Steps, closeness, endings_of
+from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import StructureError
 from herringbone.core.activity import activity
-from herringbone.core.names import matches_any
 from herringbone.core.part import Part, column
-from herringbone.core.places.part_path import PartPath
+from herringbone.core.places.part_path import PartPath, find_columns
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import build_network
@@ -86,11 +85,7 @@ def fused_beside(
     lines = [
         f"fused: {', '.join(inside.paths)}; coupled with them: {', '.join(outer.paths)}",
     ]
-    if core.missing:
-        lines.append(
-            f"not recorded, as only steps of the parts make them: {', '.join(core.missing)}"
-        )
-    return coupled, [part, *others], lines
+    return coupled, [part, *others], [*lines, *core.unrecorded]
 
 
 def _crossing(
@@ -125,7 +120,7 @@ def _recorded(
     """
     if not record:
         return core.names
-    return core.chosen(record, system.channels, _outputs(strangers))
+    return core.chosen(record, system, _outputs(strangers))
 
 
 def _outputs(parts: Sequence[Part]) -> list[str]:
@@ -149,7 +144,7 @@ def _free_name(outer: System) -> str:
 def with_channels(system: System, columns: Sequence[str]) -> System:
     """The system with the patterns of its channels that match recorded outputs."""
     found = {
-        group: tuple(p for p in patterns if any(matches_any(endings_of(c), [p]) for c in columns))
+        group: tuple(p for p, own in find_columns(system.paths, columns, patterns).items() if own)
         for group, patterns in system.channels.items()
     }
     return replace(system, channels={group: own for group, own in found.items() if own})

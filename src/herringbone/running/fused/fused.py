@@ -178,11 +178,7 @@ def _lines(core: Core, asked: FusedAsked, trial: Measured) -> list[str]:
         lines = [f"fused: {steps}, for an error of {100.0 * tolerance:g} %: {errors} over {over}"]
     else:
         lines = [f"fused: {steps}, as asked for: error {errors} over {over}"]
-    if core.missing:
-        lines.append(
-            f"not recorded, as only steps of the parts make them: {', '.join(core.missing)}"
-        )
-    return lines
+    return [*lines, *core.unrecorded]
 
 
 def _verification(trial: Measured) -> Verification | None:

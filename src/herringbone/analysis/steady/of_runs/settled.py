@@ -13,6 +13,7 @@ from herringbone.analysis.steady.of_runs.ending import Ending, ending_of
 from herringbone.analysis.steady.outputs import Harmonics
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
 from herringbone.core import ParameterError
+from herringbone.core.places.part_path import PartPath
 from herringbone.result.result import Result
 
 UNTOLD = "multipliers, bends and sensitivities are not known: foreign parts show no equations"
@@ -37,6 +38,11 @@ class SettledState(PeriodicMotion):
     def system_name(self) -> str:
         """Of the system."""
         return self.run.info.system
+
+    @property
+    def parts(self) -> tuple[PartPath, ...]:
+        """Of the system."""
+        return self.run.parts
 
     @cached_property
     def changes(self) -> Mapping[str, float]:

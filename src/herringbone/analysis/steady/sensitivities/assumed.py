@@ -15,8 +15,8 @@ from herringbone.components.registry import component
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.declaring.variable import Causality
-from herringbone.core.names import matches_any
 from herringbone.core.places.files import is_file
+from herringbone.core.places.part_path import find_columns
 from herringbone.core.places.temporary import temporary_folder
 from herringbone.cosim.structure.system import System
 
@@ -64,17 +64,11 @@ def assumed(system: System, patterns: Sequence[str] = ()) -> list[str]:
         return [*(n for n, unit in _parameters(system) if _is_damping(n, unit)), *housings]
     every = [*(n for n, _ in _parameters(system)), *housings]
     found: dict[str, None] = {}
-    for pattern in patterns:
-        own = [n for n in every if matches_any((n, *_endings(n)), [pattern])]
+    for pattern, own in find_columns(system.paths, every, patterns).items():
         if not own:
             raise ParameterError(f"sensitivities: '{pattern}' is no parameter that is not zero")
         found.update(dict.fromkeys(own))
     return list(found)
-
-
-def _endings(name: str) -> Iterator[str]:
-    words = name.split(".")
-    return (".".join(words[k:]) for k in range(1, len(words) - 1))
 
 
 def _is_damping(name: str, unit: str) -> bool:

@@ -1,6 +1,6 @@
 """A system whose parts are fused: its condensed core, and the outputs that can be recorded."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from copy import copy
 from functools import cached_property
 from typing import NamedTuple
@@ -21,7 +21,7 @@ from herringbone.analysis.twin.condensed.wanted import places_seen
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError, Variable
 from herringbone.core.caching.remembered import Remembered
-from herringbone.core.names import matches_any
+from herringbone.core.places.part_path import in_groups
 from herringbone.cosim.structure.system import System
 
 _OF_TOLERANCE = 100.0
@@ -108,6 +108,12 @@ class Core:
         ]
         self.missing = tuple(name for name in declared if name not in set(self.names))
 
+    @property
+    def unrecorded(self) -> list[str]:
+        """A line on outputs that cannot be recorded, if there are any."""
+        why = "not recorded, as only steps of the parts make them"
+        return [f"{why}: {', '.join(self.missing)}"] if self.missing else []
+
     def leaner(self, lean: Lean) -> "Core":
         """The core of a leaner model, without taking the system apart again.
 
@@ -126,32 +132,30 @@ class Core:
     def chosen(
         self,
         patterns: Sequence[str],
-        channels: Mapping[str, Sequence[str]] | None = None,
+        whole: System | None = None,
         others: Sequence[str] = (),
     ) -> tuple[str, ...]:
         """Outputs that match any of the patterns or are in a group of channels; all without.
 
         Args:
             patterns: of outputs, or names of groups.
-            channels: groups of patterns; those of the system if not given.
-            others: outputs of other parts, which patterns may match as well.
+            whole: system whose parts and channels count; the condensed one if None.
+            others: outputs of its other parts, which patterns may match as well.
 
         Raises:
             StructureError: a pattern matches nothing.
         """
         if not patterns:
             return self.names
-        channels = self.twin.system.channels if channels is None else channels
-        found: set[str] = set()
-        for pattern in patterns:
-            wanted = channels.get(pattern, [pattern])
-            own = {name for name in self.names if matches_any(endings_of(name), wanted)}
-            if not own and not any(matches_any(endings_of(name), wanted) for name in others):
-                groups = ", ".join(channels) or "none"
-                raise StructureError(
-                    f"record: no output matches '{pattern}'; groups of channels: {groups}"
-                )
-            found |= own
+        system = self.twin.system if whole is None else whole
+        wanted = {pattern: system.channels.get(pattern, [pattern]) for pattern in patterns}
+        meant = in_groups(system.paths, (*self.names, *others), wanted)
+        if missing := [pattern for pattern in patterns if pattern not in meant]:
+            groups = ", ".join(system.channels) or "none"
+            raise StructureError(
+                f"record: no output matches '{missing[0]}'; groups of channels: {groups}"
+            )
+        found = {name for names in meant.values() for name in names}
         return tuple(name for name in self.names if name in found)
 
     def groups(self) -> dict[str, list[str]]:
@@ -160,13 +164,9 @@ class Core:
 
     @cached_property
     def _groups(self) -> dict[str, list[str]]:
-        channels = self.twin.system.channels
-        found = {
-            group: [n for n in self.names if matches_any(endings_of(n), patterns)]
-            for group, patterns in channels.items()
-        }
-        if any(found.values()):
-            return {group: names for group, names in found.items() if names}
+        system = self.twin.system
+        if found := in_groups(system.paths, self.names, system.channels):
+            return found
         by_unit: dict[str, list[str]] = {}
         for name in self.names:
             by_unit.setdefault(outputs_in(self.unit(name)), []).append(name)
@@ -189,9 +189,3 @@ class Core:
     def outputs(self, columns: Sequence[str], steps: Steps, *, inside: bool) -> Outputs:
         """Values of some outputs; see `Outputs`."""
         return Outputs(self.condensed, self.affine, columns, steps.degree, inside=inside)
-
-
-def endings_of(name: str) -> tuple[str, ...]:
-    """An output's name, and what is left of it without the first of its paths."""
-    words = name.split(".")
-    return tuple(".".join(words[k:]) for k in range(len(words) - 1))
