@@ -15,7 +15,7 @@ from herringbone.commands.chart.report import table
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms import ALGORITHMS, parse_algorithm
 from herringbone.plotting.work_precision import chart_picture, write_chart
-from herringbone.running.charting.measure import measure
+from herringbone.running.charting.measure import measure, said_once
 
 CHEAP, GOOD = "jacobi:order=1,schedule=bodies_first", "li:degree=3,iterations=1"
 KEYS = {
@@ -42,6 +42,16 @@ def chart():
         ),
         ("a note",),
     )  # fmt: skip
+
+
+def test_what_all_algorithms_have_in_common_is_said_once():
+    ours = "a unit is not declared"
+    found = [
+        (point(CHEAP, 1e-6, 1e-4), (f"{CHEAP}: {ours}", f"{CHEAP}: held")),
+        (point(CHEAP, 2e-6, 1e-4), (f"{CHEAP}: {ours}",)),
+        (point(GOOD, 1e-6, 1e-4), (f"{GOOD}: {ours}",)),
+    ]
+    assert list(said_once(found)) == [ours, f"{CHEAP}: held"]
 
 
 def test_pareto_front():

@@ -64,6 +64,7 @@ def test_a_rotor_at_rest_inside_a_part_meets_a_gear_that_turns():
     assert line.startswith("fly: what is behind its shaft at flange.phi turns at 0 rad/s")
     assert "gear.w = 104.7 rad/s" in line
     assert "--set fly.NAME=104.7" in line
+    assert "--set gear.NAME=0" in line
 
 
 @pytest.mark.parametrize("inside", [FAST, 0.97 * FAST, math.nan])

@@ -1,9 +1,12 @@
 """The format "modal-housing 1.0": exact round trip, and the message for each kind of bad data."""
 
 import json
+import re
 import shutil
 import zipfile
 from dataclasses import fields, replace
+from hashlib import sha256
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +16,7 @@ from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.core import Instance, ResourceError
 from herringbone.housing import default_housing, read_housing, write_housing
 from herringbone.housing.files.file_format import digest
+from herringbone.housing.files.plausibility import implausible
 from herringbone.housing.files.validation import housing_warnings
 
 
@@ -233,3 +237,44 @@ def test_warnings():
     assert "differs from static.csv by -100 %" in scale
     (residual,) = housing_warnings(small_housing())
     assert "residual.csv is not read by the FMU" in residual
+
+
+def test_folder_by_the_page_alone(tmp_path):
+    """The page's JSON and first lines make modal data: a mass of 10 kg at each seat, held alone."""
+    page = (Path(__file__).parents[3] / "docs" / "housings.md").read_text(encoding="utf-8")
+    plain = json.loads(page.partition("```json\n")[2].partition("```")[0])
+    units = {
+        name: f"{head}\n" for name, head in re.findall(r"\| `(\w+\.csv)`.*?`(# units.*?)`", page)
+    }
+    (seat,) = plain["points"]
+    places = {
+        "pinion_right": (0.0, -0.127),
+        "wheel_left": (0.2, 0.127),
+        "wheel_right": (0.2, -0.127),
+    }
+    others = ({**seat, "name": name, "position": [x, 0.0, z]} for name, (x, z) in places.items())
+    plain["points"] = [seat, *others]
+    modes, rows = range(1, 13), [f"{p['name']},{axis}" for p in plain["points"] for axis in "xyz"]
+    head = ",".join(f"m{mode}" for mode in modes)
+
+    def diagonal(value, names):
+        lines = (
+            ",".join([n, *(str(value * (i == j)) for j in range(12))]) for i, n in enumerate(names)
+        )
+        return "\n".join(lines) + "\n"
+
+    tables = {
+        "modes.csv": "mode,kind,frequency_hz,damping_ratio\n"
+        + "".join(f"{mode},normal,700,0.02\n" for mode in modes),
+        "shapes.csv": f"point,dof,{head}\n" + diagonal(0.1**0.5, rows),
+        "surface_gram.csv": f"mode,{head}\n" + diagonal(0.005, map(str, modes)),
+    }
+    for name, table in tables.items():
+        (tmp_path / name).write_text(units[name] + table, encoding="utf-8")
+    plain["sha256"] = {name: sha256((tmp_path / name).read_bytes()).hexdigest() for name in tables}
+    (tmp_path / "housing.json").write_text(json.dumps(plain), encoding="utf-8")
+    housing = read_housing(tmp_path)
+    assert list(implausible(housing)) == []
+    compliance = 1.0 / (10.0 * (2.0 * np.pi * 700.0) ** 2)
+    np.testing.assert_allclose(housing.static_compliance(), compliance * np.eye(12), rtol=1e-12)
+    assert housing.gram is not None

@@ -34,6 +34,14 @@ def test_stiffness_of_another_order(factor, noted):
     assert all("are lengths, masses or shapes of another unit?" in line for line in lines)
 
 
+def test_left_seats_on_the_right():
+    """Both shafts the wrong way round; left is +z."""
+    mirrored = tuple(replace(p, position=(*p.position[:2], -p.position[2])) for p in HOUSING.points)
+    lines = list(implausible(replace(HOUSING, points=mirrored)))
+    assert [line.partition(" ")[0] for line in lines] == ["pinion_left", "wheel_left"]
+    assert all("left is +z" in line for line in lines)
+
+
 def test_modes_of_a_housing_that_is_not_held():
     kind = ("rigid", "rigid", *HOUSING.kind[2:])
     frequency = np.array([0.0, 0.0, *HOUSING.frequency_hz[2:]])

@@ -189,6 +189,18 @@ def test_what_may_be_overwritten(tmp_path, key, state, named, found):
     assert claimed(replace(claim, folder=tmp_path / "new")) == tmp_path / "new"
 
 
+def test_a_folder_that_is_written_is_not_told_as_cut_off(tmp_path):
+    """`--resume` and `--overwrite`, which the line on a run that was cut off names, would fail."""
+    folder = tmp_path / "r"
+    settled(folder, "k", State.RUNNING)
+    lock = FolderLock(folder)
+    with pytest.raises(HerringboneError, match="another run is writing into"):
+        claimed(Claim(folder, False, "k", {"scene": "k"}))
+    lock.release()
+    with pytest.raises(HerringboneError, match="cut off"):
+        claimed(Claim(folder, False, "k", {"scene": "k"}))
+
+
 def test_results_of_an_older_version_are_not_overwritten(tmp_path):
     (tmp_path / "summary.json").write_text("{}")
     with pytest.raises(HerringboneError, match="older version"):

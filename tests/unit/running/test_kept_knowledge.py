@@ -14,6 +14,8 @@ from herringbone.cosim.signature import Answer, Kind, Signature
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.foreign.known_signatures import known_signature
 from herringbone.running.known_limits import KnownLimits
+from herringbone.running.settling import flanks
+from herringbone.running.settling.stranger import NeverSettlesError, NoSettledStartError
 
 STEP = 1e-4
 LIMITS = StepLimits(
@@ -100,3 +102,20 @@ def test_an_unknown_signature_is_looked_for_again(system):
     assert len(calls) == 1
     known_signature(replace(spec, values={"mass": 2.0}), STEP, find)
     assert len(calls) == 2
+
+
+@pytest.mark.parametrize(("error", "searches"), [(NeverSettlesError, 1), (NoSettledStartError, 2)])
+def test_why_nothing_settles_is_found_once_unless_a_part_failed(
+    system, monkeypatch, error, searches
+):
+    calls = []
+
+    def search(*_):
+        calls.append(1)
+        raise error("their.torque does not die out")
+
+    monkeypatch.setattr(flanks, "settled_start", search)
+    for _ in range(2):
+        with pytest.raises(error, match="does not die out"):
+            flanks.loaded_settled_start(system, system, STEP)
+    assert len(calls) == searches

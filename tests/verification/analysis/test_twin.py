@@ -179,6 +179,8 @@ def test_foreign_part_has_no_twin(tmp_path):
     system = rotor_pair().with_fmu("two", tmp_path / "x.fmu")
     with pytest.raises(StructureError, match="two is a foreign FMU"):
         Twin(system)
+    with pytest.raises(StructureError, match="one, two are foreign FMUs: their equations"):
+        Twin(system.with_fmu("one", tmp_path / "x.fmu"))
 
 
 def test_error_measure():

@@ -176,6 +176,10 @@ NOTED = {
         "gear_mesh has y along the line of action of its drive flank (1), bearing_supports along "
         "that of the coast flank (-1)",
     ),
+    "bearings in N/mm": (  # 200 N m / (2 base radii) / 6.34e5 N/m = 3.136 mm
+        lambda f: {"values": {"bearing_supports.pinion.radial_stiffness": 6.34e5}},
+        "gear_mesh.pinion_right.s_y comes to 3.14 mm, at a base radius of 50.3 mm",
+    ),
     "stage of REXS": (
         lambda f: {"gear": STAGE},
         f"{STAGE}: a REXS stage has one face width, 50 mm; it is taken as that of each half",

@@ -46,8 +46,10 @@ def refuse_foreign_parts(system: System) -> None:
         StructureError: a part is a foreign FMU.
     """
     if system.foreign_parts:
+        one = len(system.foreign_parts) == 1
+        what, whose = ("is a foreign FMU", "its") if one else ("are foreign FMUs", "their")
         raise StructureError(
-            f"{', '.join(system.foreign_parts)} is a foreign FMU: its equations are not known, so "
+            f"{', '.join(system.foreign_parts)} {what}: {whose} equations are not known, so "
             "that there is no monolithic reference for this system"
         )
 

@@ -69,8 +69,8 @@ def unlike_inside(network: Network) -> Iterator[str]:
                     f"{part.name}: what is behind its shaft at {signature.inputs[number]} turns at "
                     f"{_round(inside)} {_SPEED} at the start, and meets {source.name}."
                     f"{fed[name].output} = {outside:.5g} {_SPEED}, a jump; set the start value of "
-                    f"its speed (--set {part.name}.NAME={outside:.5g}), or begin at rest on both "
-                    "sides"
+                    f"its speed (--set {part.name}.NAME={outside:.5g}), or that of what it meets "
+                    f"(--set {source.name}.NAME={_round(inside)})"
                 )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from herringbone.core.declaring.roles import HALVES
+from herringbone.core.declaring.roles import GEARS, HALVES, SIDES
 from herringbone.housing.modal_model import AXES, ModalHousing
 
 _STIFFNESS, _OFF = 1e9, 1e3
@@ -30,6 +30,19 @@ def implausible(housing: ModalHousing) -> Iterator[str]:
     for one, other in itertools.combinations(HALVES, 2):
         if np.abs(shapes[one] - shapes[other]).max() <= _SAME * np.abs(shapes[one]).max():
             yield f"seats {one} and {other} move alike in all modes: are they the same nodes?"
+    yield from _of_sides(housing)
+
+
+def _of_sides(housing: ModalHousing) -> Iterator[str]:
+    """A line for each shaft whose left seat is not at larger z than its right one."""
+    along = {point.name: 1e3 * point.position[2] for point in housing.points}
+    for gear in GEARS:
+        left, right = (f"{gear}_{side}" for side in SIDES)
+        if along[left] <= along[right]:
+            yield (
+                f"{left} lies at z = {along[left]:.1f} mm, {right} at {along[right]:.1f} mm: left "
+                "is +z; are seats exchanged, or is the frame another one?"
+            )
 
 
 def _of_units(housing: ModalHousing) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """What a speed-accuracy chart shows: runs of algorithms up a ladder of steps, and their errors."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from herringbone.analysis.accuracy.converged import Converged
@@ -12,7 +12,7 @@ from herringbone.analysis.accuracy.step_ladder import (
     ladder,
     run_points,
 )
-from herringbone.analysis.accuracy.work_precision import WorkPrecision
+from herringbone.analysis.accuracy.work_precision import Point, WorkPrecision
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
@@ -106,9 +106,21 @@ def measure(
         modes,
         micro_step,
         tuple(point for point, _ in found),
-        tuple(dict.fromkeys([*notes, *(note for _, own in found for note in own)])),
+        tuple(dict.fromkeys([*notes, *said_once(found)])),
         bool(structure.foreign_parts),
     )
+
+
+def said_once(found: Sequence[tuple[Point, Sequence[str]]]) -> Iterator[str]:
+    """Notes on runs, without the algorithm where those of all algorithms have the same one."""
+    by_text: dict[str, list[str]] = {}
+    for point, notes in found:
+        for note in notes:
+            by_text.setdefault(note.removeprefix(f"{point.algorithm}: "), []).append(note)
+    algorithms = {point.algorithm for point, _ in found}
+    for text, notes in by_text.items():
+        different = dict.fromkeys(notes)
+        yield from [text] if len(different) == len(algorithms) else different
 
 
 def _curves(algorithms: Sequence[str], tolerances: Sequence[float]) -> list[Algorithm]:

@@ -66,7 +66,11 @@ class _Taken:
 
 
 def _taken(folder: Path, claim: Claim) -> _Taken | None:
-    """Why a folder is not to be overwritten; None if it may be."""
+    """Why a folder is not to be overwritten; None if it may be.
+
+    Raises:
+        HerringboneError: another process writes into it.
+    """
     try:
         found = read_run_file(folder)
     except ResourceError as error:
@@ -84,6 +88,7 @@ def _taken(folder: Path, claim: Claim) -> _Taken | None:
             "or overwrite it with --overwrite"
         )
     if found.state is State.RUNNING:
+        FolderLock(folder).release()  # one that still writes is not cut off
         return _Taken(
             "holds this run, but cut off; go on with --resume, or begin anew with --overwrite", True
         )

@@ -1,4 +1,7 @@
-"""A start in equilibrium with foreign parts, on the flanks that carry; kept when it is found."""
+"""A start in equilibrium with foreign parts, on the flanks that carry; it is looked for once.
+
+What is found is kept, and so is why there is none: either takes seconds of steps of the FMUs.
+"""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -12,10 +15,12 @@ from herringbone.running.content import contents_of_system
 from herringbone.running.pairs.carrying_flank import COAST, coasts, free_flanks
 from herringbone.running.settling.search import SettledStart
 from herringbone.running.settling.settled_start import settled_start
-from herringbone.running.settling.stranger import NoSettledStartError
+from herringbone.running.settling.stranger import NeverSettlesError, NoSettledStartError
 
 _SOURCES = ("herringbone.running.settling.settled_start",)
 _LIBRARIES = "numpy", "scipy"
+_NEVER = "never"
+"""Name under which it is kept why there is no such start."""
 
 
 def loaded_settled_start(
@@ -57,15 +62,25 @@ def _coasting(
 
 
 def _known_start(system: System, known: System, step: float) -> SettledStart:
-    """The start that was found before, or is found now and kept; it may take seconds."""
+    """The start that was found before, or is found now and kept; it may take seconds.
+
+    Raises:
+        NoSettledStartError: there is none, or none was found.
+    """
     key = digest_of(
         kernels_key(*_SOURCES), *versions_of(*_LIBRARIES), *contents_of_system(system), repr(step)
     )
     file = cache_root() / "settled-starts" / f"{key}.json"
     if (plain := kept(file)) is not None:
+        if _NEVER in plain:
+            raise NeverSettlesError(plain[_NEVER])
         approaches = {name: _approach(way) for name, way in plain["approaches"].items()}
         return SettledStart(**{**plain, "approaches": approaches})
-    found = settled_start(system, known, step)
+    try:
+        found = settled_start(system, known, step)
+    except NeverSettlesError as error:
+        keep(file, {_NEVER: str(error)})
+        raise
     ways = {str(name): asdict(way) for name, way in found.approaches.items()}
     keep(file, {**found._asdict(), "values": dict(found.values), "approaches": ways})
     return found

@@ -13,7 +13,7 @@ from herringbone.running.settling.anderson import Anderson
 from herringbone.running.settling.links import Links
 from herringbone.running.settling.own_motion import OwnMotion, own_motion
 from herringbone.running.settling.settled import LONGEST, Settled
-from herringbone.running.settling.stranger import NoSettledStartError, Stranger
+from herringbone.running.settling.stranger import NeverSettlesError, Stranger
 
 _FIRST = 0.02
 """Duration that is tried first [s]."""
@@ -80,7 +80,7 @@ class Search:
                 ways = self._approaches(motion)
                 return SettledStart(motion.values, ways, motion.acceleration, motion.fastest)
             constant = search.next(constant, answer - straight)
-        raise NoSettledStartError("what foreign parts answer and what own parts give do not meet")
+        raise NeverSettlesError("what foreign parts answer and what own parts give do not meet")
 
     def at_balance(self, farthest: float) -> SettledStart | None:
         """The start at a speed at which torques balance, and to which they bring the drivetrain.
@@ -187,14 +187,14 @@ class Search:
         """Twice the time, and the motion that goes with it.
 
         Raises:
-            NoSettledStartError: that is too long.
+            NeverSettlesError: that is too long.
         """
         before = self._way()
         if part.at_once:
-            raise NoSettledStartError(f"{part.name}: {found.worst} has no steady value")
+            raise NeverSettlesError(f"{part.name}: {found.worst} has no steady value")
         self._durations[part.name] *= 2.0
         if self._durations[part.name] > LONGEST:
-            raise NoSettledStartError(
+            raise NeverSettlesError(
                 f"{part.name}.{found.worst} still changes by {100.0 * found.change:.2g} % after "
                 f"{0.5 * self._durations[part.name]:.3g} s"
             )

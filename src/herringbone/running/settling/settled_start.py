@@ -17,7 +17,11 @@ from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System
 from herringbone.running.settling.laid_out import laid_out
 from herringbone.running.settling.search import PROBE, Search, SettledStart
-from herringbone.running.settling.stranger import NoSettledStartError, Stranger
+from herringbone.running.settling.stranger import (
+    NeverSettlesError,
+    NoSettledStartError,
+    Stranger,
+)
 
 _NEAR, _FARTHEST = 0.05, 0.5
 """How far a speed that was set may be moved, as a share of it; the latter where there is no other
@@ -33,11 +37,14 @@ def settled_start(system: System, known: System, step: float) -> SettledStart:
         step: of the trials that tell what foreign parts are [s].
 
     Raises:
-        NoSettledStartError: there is none.
+        NeverSettlesError: there is none.
+        NoSettledStartError: none was found, as a part failed, or cannot be tried.
     """
     try:
         with laid_out(system, known, step) as (network, strangers):
             return _found(known, network, strangers)
+    except NeverSettlesError:
+        raise
     except HerringboneError as error:
         raise NoSettledStartError(str(error)) from error
 

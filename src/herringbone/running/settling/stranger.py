@@ -27,6 +27,10 @@ class NoSettledStartError(HerringboneError):
     """There is no start in equilibrium: a part has no steady answer, takes too long, or more."""
 
 
+class NeverSettlesError(NoSettledStartError):
+    """Foreign parts answer so that there is no such start, as they would in each further try."""
+
+
 class Stranger:
     """A foreign part with what it is given and what is taken from it.
 
@@ -130,7 +134,7 @@ class Stranger:
         return np.ptp(seen, axis=0)[self._watched] / sizes[self._watched]
 
     def refuse_hopeless(self, found: Settled, before: Settled | None, duration: float) -> None:
-        """Raise NoSettledStartError of what will not settle in time, see `why_not`.
+        """Raise NeverSettlesError of what will not settle in time, see `why_not`.
 
         Args:
             found: after this time [s].
@@ -139,7 +143,7 @@ class Stranger:
         """
         why = why_not(found, before, duration, self.units.get(found.worst, "")) if before else ""
         if why:
-            raise NoSettledStartError(f"{self.name}.{found.worst} {why}")
+            raise NeverSettlesError(f"{self.name}.{found.worst} {why}")
 
     def sizes(self, values: np.ndarray) -> np.ndarray:
         """(m,) largest values of the same unit."""

@@ -3,6 +3,7 @@
 Each is a line with the numbers of both sides. Nothing is refused here: a user may mean it.
 """
 
+from herringbone.analysis.figures.misfits.displaced import of_axes
 from herringbone.analysis.figures.misfits.flanks import of_flank
 from herringbone.analysis.figures.misfits.housings import of_housing
 from herringbone.analysis.figures.misfits.ratios import of_ratio
@@ -16,6 +17,6 @@ def misfits(result: Result) -> tuple[str, ...]:
     return tuple(
         line
         for gear in result.parts_with(Role.GEAR_PAIR)
-        for of in (of_ratio, of_housing, of_table, of_flank)
+        for of in (of_ratio, of_housing, of_table, of_flank, of_axes)
         for line in of(result, gear)
     )
