@@ -15,6 +15,7 @@ from herringbone.result.budget import BudgetRow
 from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.foreign.interfaces import unfed
 from herringbone.running.foreign.linear_start import turned_back, under_load
+from herringbone.running.foreign.speeding_up import speeding_up
 from herringbone.running.foreign.surrogates import surrogates_of
 from herringbone.running.loading import instances
 from herringbone.running.remembered_answers import bond_of, stability_warning
@@ -157,6 +158,6 @@ def _stability_notes(
                 clock.parts_of_period(step)
             except HerringboneError as error:
                 return [f"whether the step is stable is not known: {error}"]
-        loaded = turned_back(under_load(system))
+        loaded = speeding_up(turned_back(under_load(system)), found.strangers)
         warning = warn_if_unstable(loaded, algorithm, step, t_end, strangers=found.strangers)
     return [warning] if warning else []

@@ -79,6 +79,7 @@ class Amplification:
         self.algorithm = algorithm
         self._start = [part.values.copy() for part in self._parts]
         self._laid_out = algorithm.prepare(self.network)  # the same for all steps
+        self._laid_out.correct_evenly()
         layout = self._laid_out.layout
         check_orders(layout, self._parts)
         self._outputs = layout.output_reference.size

@@ -166,6 +166,13 @@ class PreparedRun(ABC):
         """
         del tolerance, inner_step, channels
 
+    def correct_evenly(self) -> None:  # noqa: B027 (most algorithms do)
+        """Take as many corrections in every step, for differences of steps of linear parts.
+
+        One by the Jacobian leaves nothing there but rounding. Of two steps that hardly differ one
+        may ask for another correction, and the trifle that this removes is no answer to the change.
+        """
+
     @property
     def inner_outputs(self) -> bool:
         """True if outputs are wanted inside the macro step, not only at its end."""

@@ -110,6 +110,11 @@ class PreparedNodes(PreparedRun):
         if tolerance:
             self.rest = max(REST, REST_SHARE * tolerance)
 
+    def correct_evenly(self) -> None:
+        """See `PreparedRun`; sweeps without a Jacobian go on as long as they better anything."""
+        if self.newton:
+            self.rest = math.inf
+
     @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
         """Downgrades; and, after a run, a residual that the corrections did not remove."""

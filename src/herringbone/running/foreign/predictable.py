@@ -9,6 +9,7 @@ from herringbone.analysis.stability.linear_parts import Strangers
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.system import System
 from herringbone.running.foreign.linear_start import turned_back, under_load
+from herringbone.running.foreign.speeding_up import speeding_up
 from herringbone.running.foreign.surrogates import opened_surrogates, without_missing
 from herringbone.running.known_limits import KnownLimits
 from herringbone.running.prepared import Wishes, prepared
@@ -58,5 +59,6 @@ def predictable(
         started, _ = without_missing(started, foreign)
         for line in missing:
             tell(line)
+        exact, started = (speeding_up(s, foreign.strangers) for s in (exact, started))
         known = KnownLimits(started, trials)
         yield Predictable(exact, started, chosen.name, foreign.strangers, missing, known)

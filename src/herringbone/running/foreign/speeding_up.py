@@ -1,0 +1,101 @@
+"""Own parts beside foreign ones that are sped up with them, for what is predicted before a run.
+
+Where no start in equilibrium is known, torques that do not balance speed the drivetrain up evenly.
+What foreign parts weigh then loads the meshes: a motor behind a pinion presses its teeth together
+several times as hard as the pinion alone. Stiffness and, where teeth carry next to nothing, damping
+go with that.
+"""
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+
+import numpy as np
+
+from herringbone.analysis.answered import Answers
+from herringbone.analysis.equilibrium import answered_equilibrium
+from herringbone.analysis.stability.linear_parts import Strangers, linear_network
+from herringbone.analysis.stability.surrogates.inertia import by_acceleration
+from herringbone.analysis.stability.surrogates.surrogate import Surrogate
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import HerringboneError
+from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.system import System, Values
+from herringbone.running.pairs.carrying_flank import loaded_start
+from herringbone.running.settling.own_motion import Output, own_motion
+from herringbone.running.start import known_parts
+
+Variable = tuple[str, str]
+"""A part's name and a variable's."""
+_STEADY = 1e-3
+"""Acceleration [rad/s^2] that is none."""
+_NOTHING = Answers((), np.empty(0), (), np.empty((0, 0)), np.empty(0))
+
+
+def speeding_up(system: System, strangers: Strangers) -> System:
+    """The system with its own parts as they are when foreign ones are sped up with them.
+
+    As it is where foreign parts are brought to the start, where torques balance without them, or
+    where what they answer to acceleration leaves no mesh closed.
+
+    Args:
+        system: under load, see `under_load`.
+        strangers: what stands for its foreign parts.
+    """
+    if not strangers or any(part.approach for part in system.parts):
+        return system
+    own = known_parts(system)
+    if not own.parts:
+        return system
+    with suppress(HerringboneError, np.linalg.LinAlgError):
+        crossing = _crossing(linear_network(system, strangers=strangers)[0], strangers)
+        taken = list(dict.fromkeys(of for of, to in crossing if to[0] in strangers))
+        motion = own_motion(own, _NOTHING, [".".join(of) for of in taken])
+        if abs(motion.acceleration) > _STEADY:
+            answers = _answers(strangers, crossing, motion.outputs)
+
+            def accelerated(known: System) -> Values:
+                return answered_equilibrium(Twin(known), answers).values
+
+            return system.with_values(loaded_start(own, accelerated)[0])
+    return system
+
+
+def _crossing(network: Network, strangers: Strangers) -> list[tuple[Variable, Variable]]:
+    """Connections from own parts to foreign ones and back."""
+    names = [part.name for part in network.parts]
+    return [
+        ((names[c.source], c.output), (names[c.target], c.input))
+        for c in network.connections
+        if (names[c.source] in strangers) is not (names[c.target] in strangers)
+    ]
+
+
+def _answers(
+    strangers: Strangers,
+    crossing: Sequence[tuple[Variable, Variable]],
+    outputs: Mapping[str, Output],
+) -> Answers:
+    """What own inputs are fed, by acceleration alone; raises LinAlgError.
+
+    Args:
+        strangers: what stands for foreign parts.
+        crossing: see `_crossing`.
+        outputs: of own parts that foreign ones take, by path.
+    """
+    given = {to: outputs[".".join(of)] for of, to in crossing if to[0] in strangers}
+    found: dict[Variable, float] = {}
+    for name, stranger in strangers.items():
+        surrogate = stranger.surrogate
+        if not isinstance(surrogate, Surrogate) or surrogate.model is None:
+            continue
+        inputs = [given.get((name, u)) for u in surrogate.inputs]
+        angles, speeds = (
+            np.array([u.by_acceleration if u and u.is_speed is kind else 0.0 for u in inputs])
+            for kind in (False, True)
+        )
+        answer = by_acceleration(surrogate.model, angles, speeds)
+        found |= {(name, y): float(z) for y, z in zip(surrogate.outputs, answer, strict=True)}
+    fed = [(".".join(to), found[of]) for of, to in crossing if of in found]
+    by = np.array([answer for _, answer in fed])
+    none = np.zeros(len(fed))
+    return Answers(tuple(path for path, _ in fed), none, (), np.empty((len(fed), 0)), by)

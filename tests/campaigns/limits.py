@@ -1,0 +1,148 @@
+"""Predicted limits of systems with foreign parts against runs of these parts.
+
+    python -m campaigns.limits FOLDER ... [--algorithms A B ...]
+
+in tests/; each folder is that of a system. A line for each algorithm: the limit, the frequency that
+grows there, growth in runs at shares `TRIED` of it (a power of e per macro step, of a perturbation;
+"ends" where a run ends early, "." where it decays, or grows by less than a run shows), and a
+verdict. With contact a run must not grow at the first share, and must grow at another one, or in
+the middle of a narrower band. Systems of foreign parts alone are linear here: they decay at 0.98,
+and grow at 1.02 or in the middle of a narrower band.
+"""
+
+import argparse
+import math
+from collections.abc import Mapping
+
+from support.stranger_limits import limits
+
+from campaigns.plans import tell
+from herringbone.analysis.stability.amplification import Amplification
+from herringbone.analysis.stability.limits import default_algorithms
+from herringbone.analysis.stability.linear_parts import Strangers, linear_network, real_parts
+from herringbone.analysis.stability.steps.perturbed_run import perturbation_growth
+from herringbone.analysis.stability.steps.simulated_limit import run_steps
+from herringbone.analysis.stability.steps.step_limits import (
+    StepLimits,
+    clocks_of,
+    step_limits,
+)
+from herringbone.analysis.stability.steps.step_scan import safe_growth
+from herringbone.analysis.stability.surrogates.sampled import common_steps
+from herringbone.core import HerringboneError, ParameterError
+from herringbone.cosim.algorithms import Algorithm, parse_algorithm
+from herringbone.cosim.structure.system import System
+from herringbone.running.foreign.predictable import predictable
+from herringbone.running.prepared import Wishes
+
+TRIED = (0.9, 1.0, 1.02, 1.15)
+"""Steps of the runs, over the predicted limit."""
+LINEAR = 0.02
+SEEN = 1.8
+"""Growth over a whole run that shows, see `run_steps`, as a power of e."""
+
+
+def contact_verdict(rates: Mapping[float, float], expected: float) -> str:
+    """Of growth by share of the limit, with contact; the least share must not grow.
+
+    Args:
+        rates: growth by share; 0 where none shows.
+        expected: the largest growth in a whole run that is predicted, as a power of e.
+    """
+    least, *others = sorted(rates)
+    if rates[least] > 0.0:
+        return "TOO BOLD: a run grows below the prediction"
+    if any(rates[share] > 0.0 for share in others):
+        return "as predicted"
+    if expected < SEEN:
+        return f"slower than runs show: e^{expected:.2g} in a whole one is predicted"
+    return f"TOO CAREFUL: no run grows up to {max(others):.3g} of the prediction"
+
+
+def of_runs(
+    system: System, strangers: Strangers, algorithm: Algorithm, predicted: StepLimits
+) -> dict[float, float]:
+    """Growth in runs by share of a limit."""
+    limit, found = predicted.limit, dict[float, float]()
+    steps = run_steps(limit)
+    for share in shares_of(predicted, strangers):
+        rate = perturbation_growth(
+            system, lambda: real_parts(system, strangers), algorithm, share * limit, steps=steps
+        )
+        found[share] = rate if rate * steps > SEEN else 0.0
+    return found
+
+
+def shares_of(predicted: StepLimits, strangers: Strangers) -> list[float]:
+    """Of a limit, at which runs are made: with the middle of a narrow first band.
+
+    Beside parts with clocks, the last step that goes with these before the limit, and the limit.
+    """
+    limit = predicted.limit
+    if predicted.steps:
+        grid = common_steps(clocks_of(strangers), predicted.largest)
+        return [max((step for step in grid if step < limit), default=limit) / limit, 1.0]
+    low, high = predicted.unstable_bands[0] if predicted.unstable_bands else (limit, math.inf)
+    middle = math.sqrt(low * high) / limit
+    return sorted([*TRIED, *([middle] if TRIED[0] < middle < TRIED[-1] else [])])
+
+
+def told(rates: Mapping[float, float]) -> str:
+    """Growth by share, in one line."""
+    words = {
+        share: "." if rate <= 0.0 else "ends" if math.isinf(rate) else f"{rate:.1e}"
+        for share, rate in rates.items()
+    }
+    return "  ".join(f"{share:.3f}: {word}" for share, word in words.items())
+
+
+def compared(
+    system: System, started: System, strangers: Strangers, algorithm: Algorithm
+) -> tuple[str, str]:
+    """What is predicted of an algorithm and what runs show, and the verdict."""
+    if len(strangers) == len(system.parts):
+        limit, seen, _, _, rates = limits(system, strangers, algorithm)
+        right = math.isinf(limit) or abs(seen / limit - 1.0) <= LINEAR
+        both = ", ".join(f"{rate:.1e}" for rate in rates)
+        return f"{1e6 * limit:8.2f} us  {both}", "as predicted" if right else "OFF by more than 2 %"
+    found = step_limits(system, algorithm, strangers=strangers)
+    what = f"{1e6 * found.limit:8.2f} us {found.frequency:6.0f} Hz"
+    if not found.promised:
+        return what, f"nothing is promised: {100.0 * found.residual:.2g} % missed"
+    if math.isinf(found.limit):
+        return what, "no limit"
+    rates = of_runs(started, strangers, algorithm, found)
+    amplification = Amplification(*linear_network(system, strangers=strangers), algorithm)
+    steps = [share * found.limit for share in rates]
+    radius = max(safe_growth(amplification.growth, step).radius for step in steps)
+    expected = math.log(radius) * run_steps(found.limit)
+    return f"{what}  {told(rates)}", contact_verdict(rates, expected)
+
+
+def main() -> int:
+    """Print the table; 0 if all is as predicted."""
+    parser = argparse.ArgumentParser(prog="campaigns.limits", description=__doc__)
+    parser.add_argument("folders", nargs="+")
+    parser.add_argument("--algorithms", nargs="*", help="default: all")
+    options = parser.parse_args()
+    chosen = list(map(parse_algorithm, options.algorithms or [])) or default_algorithms()
+    bad = 0
+    for folder in options.folders:
+        tell(folder)
+        try:
+            with predictable(folder, None, Wishes(start_offset={}), tell) as found:
+                for algorithm in chosen:
+                    try:
+                        row = compared(found.system, found.started, found.strangers, algorithm)
+                    except ParameterError as error:
+                        row = "", f"not possible: {error}"
+                    bad += row[1].split()[0].isupper()
+                    tell(f"  {algorithm!s:28} {row[0]}  {row[1]}")
+        except HerringboneError as error:
+            tell(f"  {error}")
+            bad += 1
+    return int(bad > 0)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
