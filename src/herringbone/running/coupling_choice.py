@@ -145,19 +145,35 @@ def _stability_notes(
         return []
     if asked.fuse:
         return ["whether the step is stable is not known: that of fused parts is not predicted"]
-    what = f"predicting whether {system.name} is stable"
-    if not system.foreign_parts:
-        with activity(what):
-            warning = stability_warning(system, algorithm, step, t_end, under_load)
-        return [warning] if warning else []
-    with activity(what), surrogates_of(system, parts, step) as found:
+
+    def predicted() -> str | None:
+        if system.foreign_parts:
+            return _with_surrogates(system, parts, algorithm, step, t_end)
+        return warn_if_unstable(under_load(system), algorithm, step, t_end)
+
+    try:
+        with activity(f"predicting whether {system.name} is stable"):
+            warning = stability_warning(system, algorithm, step, t_end, predicted)
+    except _UnknownError as error:
+        return [f"whether the step is stable is not known: {error}"]
+    return [warning] if warning else []
+
+
+class _UnknownError(HerringboneError):
+    """Nothing is known of the stability of a run; says why."""
+
+
+def _with_surrogates(
+    system: System, parts: Sequence[Part], algorithm: Algorithm, step: float, t_end: float
+) -> str | None:
+    """See `warn_if_unstable`, of a system with foreign parts; raises _UnknownError."""
+    with surrogates_of(system, parts, step) as found:
         if found.missing:
-            return [f"whether the step is stable is not known: {found.why}"]
+            raise _UnknownError(found.why)
         for clock in clocks_of(found.strangers):
             try:
                 clock.parts_of_period(step)
             except HerringboneError as error:
-                return [f"whether the step is stable is not known: {error}"]
+                raise _UnknownError(str(error)) from error
         loaded = speeding_up(turned_back(under_load(system)), found.strangers)
-        warning = warn_if_unstable(loaded, algorithm, step, t_end, strangers=found.strangers)
-    return [warning] if warning else []
+        return warn_if_unstable(loaded, algorithm, step, t_end, strangers=found.strangers)

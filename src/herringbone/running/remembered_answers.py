@@ -5,7 +5,6 @@ What a process asks first its next one finds in the cache.
 
 from collections.abc import Callable
 
-from herringbone.analysis.stability.instability import warn_if_unstable
 from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.core.caching.answers import FirstAsked
 from herringbone.core.caching.keys import digest_of
@@ -20,9 +19,9 @@ _starts: Remembered[tuple[Values, tuple[str, ...]]] = Remembered(_MOST)
 _bonds: Remembered[float | None] = Remembered(_MOST)
 _warnings: Remembered[str | None] = Remembered(_MOST)
 _first_starts, _first_bonds, _first_warnings = (
-    FirstAsked(__name__, "herringbone.running.foreign.surrogates") for _ in range(3)
+    FirstAsked(__name__, "herringbone.running.coupling_choice") for _ in range(3)
 )
-"""The second module loads the systems that are asked about."""
+"""The second module asks, and knows how to find."""
 
 
 def start_of_known(system: System) -> tuple[Values, tuple[str, ...]]:
@@ -45,22 +44,18 @@ def stability_warning(
     algorithm: Algorithm,
     step: float,
     t_end: float,
-    loaded: Callable[[System], System],
+    find: Callable[[], str | None],
 ) -> str | None:
-    """See `warn_if_unstable`, of a system without foreign parts.
+    """See `warn_if_unstable`; of foreign parts the start is part of the question.
 
     Args:
         system: at its start.
         algorithm, step, t_end: of the run.
-        loaded: makes the system to which the prediction applies.
+        find: predicts; what it raises is raised, and not kept.
     """
-    key = f"{_key(system)} {algorithm!r} {step!r} {t_end!r}"
-    return _warnings(
-        key,
-        lambda: _first_warnings(
-            key, lambda: warn_if_unstable(loaded(system), algorithm, step, t_end)
-        ),
-    )
+    ways = digest_of(*(repr(spec.approach) for spec in system.parts))
+    key = f"{_key(system)} {ways} {algorithm!r} {step!r} {t_end!r}"
+    return _warnings(key, lambda: _first_warnings(key, find))
 
 
 def _key(system: System) -> str:

@@ -169,6 +169,25 @@ PARTS = {
         },
         "flags": SAVES,
     },
+    "c_slip_motor.c": {
+        "inputs": ["flange.phi", "flange.w"],
+        "outputs": ["flange.tau", "rotor_w"],
+        "parameters": {"synchronous": 100.0, "breakdown": 900.0, "slip": 0.12, "w0": 0.0},
+        "units": {
+            "flange.phi": "rad",
+            "flange.w": "rad/s",
+            "flange.tau": "N.m",
+            "rotor_w": "rad/s",
+        },
+        "flags": SAVES,
+    },
+    "c_fan.c": {
+        "inputs": ["flange.w"],
+        "outputs": ["flange.tau"],
+        "parameters": {"share": 1.0},
+        "units": {"flange.w": "rad/s", "flange.tau": "N.m"},
+        "flags": SAVES,
+    },
     "oscillator_mass.c": {
         "inputs": ["f", "xo", "vo"],
         "outputs": ["x", "v", "fo"],

@@ -24,7 +24,8 @@ from herringbone.commands import main as cli
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms import Jacobi, iterated, parse_algorithm
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.running.foreign.surrogates import opened_surrogates, under_load
+from herringbone.running.foreign.linear_start import under_load
+from herringbone.running.foreign.surrogates import opened_surrogates
 from herringbone.running.prepared import Wishes, prepared
 
 WITHIN = 0.02

@@ -29,6 +29,8 @@ _ASIDE, _ROUNDS = 1e-9, 3
 """Share by which a known eigenvalue is missed, so that a matrix can be solved; rounds of that."""
 _EXACT = 1e-8
 """A double eigenvalue that errors of 1e-16 and more have split is further from 1."""
+_TURN = 1e-7
+"""So close to 1 is the turn of everything in a matrix of differences, which errs by 1e-8."""
 
 
 @dataclass(frozen=True)
@@ -190,7 +192,7 @@ def _with_errors(matrix: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarr
     """
     scaled = dgebal(matrix, scale=1)[0]
     values, vectors = np.linalg.eig(scaled)
-    rigid = np.linalg.qr(vectors[:, np.abs(values - 1.0) < _EXACT].real)[0]
+    rigid = np.linalg.qr(vectors[:, np.abs(values - 1.0) < _TURN].real)[0]
     random = np.random.default_rng(0)
     moved = np.zeros(len(values))
     size = noise * np.linalg.norm(scaled, 2) / np.sqrt(len(values))

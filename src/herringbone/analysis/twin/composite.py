@@ -111,7 +111,8 @@ def make_composite(
         fed = tuple(to for _, to in places.inputs)
         source += core_source(parts, declaration.first_table, fed, held=held, shown=True)
         directed = {declaration.index[full_name(i, v)]: float(i[v]) for i, v in directed_by(parts)}
-        source += remark_source(steps, *declaration.indices(MICRO_STEP, TOLERANCE), directed)
+        micro_step, tolerance = declaration.indices(MICRO_STEP, TOLERANCE)
+        source += remark_source(steps, micro_step, tolerance, directed)
     module = load_generated("composite", source)
     loader = loader_of(declaration, instances, module)
     step, asked = _step_kernel(declaration, module, steps)

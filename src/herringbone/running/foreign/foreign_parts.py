@@ -58,12 +58,12 @@ def alike(part: Part, made: Part) -> Part:
 def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
     """The part as the coupling takes it, and lines on it."""
     lines = list(signature.notes)
-    if _can_be_watched(part, signature):
+    if can_be_watched(part, signature):
         lines.append(
             "trials do not tell what passes directly for all of its motions: it is measured anew "
             "as the part moves"
         )
-        return NodalPart(part, _as_it_moves(signature)), lines
+        return NodalPart(part, as_it_moves(signature)), lines
     if signature.kind not in _CLEAR:
         lines.append(f"taken by what it declares, because it is {signature.kind} to trials")
         if signature.kind is Kind.NOISY:
@@ -83,7 +83,7 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
     return nodal, lines
 
 
-def _can_be_watched(part: Part, signature: Signature) -> bool:
+def can_be_watched(part: Part, signature: Signature) -> bool:
     """True if only the feedthrough of a part is unknown, and its steps can be repeated."""
     return (
         signature.kind is Kind.UNKNOWN
@@ -95,7 +95,7 @@ def _can_be_watched(part: Part, signature: Signature) -> bool:
     )
 
 
-def _as_it_moves(signature: Signature) -> Signature:
+def as_it_moves(signature: Signature) -> Signature:
     """What is known of the signature, for a start."""
     kind = Kind.ELEMENT if signature.memory is Answer.NO else Kind.STATES_AND_FEEDTHROUGH
     return replace(signature, kind=kind)

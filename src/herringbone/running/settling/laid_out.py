@@ -15,6 +15,7 @@ from herringbone.cosim.signature import Kind
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.running.foreign.foreign_parts import as_it_moves, can_be_watched
 from herringbone.running.foreign.trials import found_signature, start_inputs
 from herringbone.running.loading import instances
 from herringbone.running.settling.stranger import NoSettledStartError, Stranger
@@ -52,6 +53,8 @@ def _stranger(
 ) -> Stranger:
     """A foreign part of the network; raises NoSettledStartError if it cannot settle in trials."""
     signature = found_signature(spec, part, instances, step)
+    if can_be_watched(part, signature):  # a fan at rest: its law is linear where it turns
+        signature = as_it_moves(signature)
     if signature.kind not in _KINDS:
         why = f": {signature.notes[0]}" if signature.notes else ""
         raise NoSettledStartError(f"{part.name} is {signature.kind} to trial steps{why}")

@@ -12,7 +12,8 @@ from herringbone.analysis.stability.surrogates.identification import LinearModel
 from herringbone.analysis.stability.surrogates.stand_in import Stranger
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 
-_HOLDS = 1e-3
+_FEELABLE = 1e-3
+_HOLDS = 1e-2
 """Torque that an angle keeps up for good, over what it makes at once: above, it is no shaft's."""
 
 
@@ -33,9 +34,10 @@ class FlangePoint:
     slope: float
 
     def __str__(self) -> str:
-        speed = "" if math.isnan(self.speed) else f"{self.speed:.5g} rad/s, "
-        slope = "" if math.isnan(self.slope) else f", torque over speed {self.slope:.3g} N m s/rad"
-        return f"{self.name} at {speed}{self.torque:.4g} N m{slope}"
+        speed = "" if math.isnan(self.speed) else f"{_shown(self.speed):.5g} rad/s, "
+        told = f", torque over speed {_shown(self.slope):.3g} N m s/rad"
+        slope = "" if math.isnan(self.slope) else told
+        return f"{self.name} at {speed}{_shown(self.torque):.4g} N m{slope}"
 
 
 def flange_points(stranger: Stranger) -> tuple[FlangePoint, ...]:
@@ -102,6 +104,11 @@ def where(stranger: Stranger) -> str:
     )
     points = "; ".join(map(str, flange_points(stranger)))
     return f"{at}: {points}" if points else at
+
+
+def _shown(value: float) -> float:
+    """A number as lines show it: what nobody feels is nothing, without a minus."""
+    return value if abs(value) >= _FEELABLE else 0.0
 
 
 def _place(names: Sequence[str], name: str | None) -> int:

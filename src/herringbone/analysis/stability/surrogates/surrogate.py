@@ -35,7 +35,7 @@ _GOOD, _ENOUGH = 1e-8, 3.0
 """The order is the smallest whose residual is this small, or at most so many times the least."""
 _LONG = 1e-6
 """Residual up to which the longest trials are the best: short ones tell nothing of slow motions."""
-_LONG_TURNING = 1e-4
+_LONG_TURNING = 1e-3
 """The same of a part that turns: its slow motions decide whether the rotation goes on evenly."""
 _FAST, _SLOW, _AIM = 2.2, 0.2, 1.0
 """Largest change of a motion in a step: base steps with more or less than this are changed."""
