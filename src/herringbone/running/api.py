@@ -136,8 +136,9 @@ def run(
             tell(line)
 
     wishes = Wishes(
-        t_end, record_step, start, values or {}, gear, housing, replace_parts or {}, lean=fuse
-    )
+        t_end, record_step, start, values or {}, gear, housing, replace_parts or {}, lean=fuse,
+        probe=probe,
+    )  # fmt: skip
     with (
         one_blas_thread(),
         foreign_fmu_policy(in_process=in_process, deadline=call_deadline),

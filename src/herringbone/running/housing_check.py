@@ -57,6 +57,12 @@ def replacement_fault(part: str, fmu: Path, usual: float) -> HousingFault | None
     return HousingFault(part, tuple(lines), energy) if lines else None
 
 
+def untested(part: str, fmu: Path) -> HousingFault:
+    """What is said of a housing FMU that replaces a part where no trial steps are to be made."""
+    line = f"{fmu} was not tested as housing, as no trial steps were to be made (no probe)"
+    return HousingFault(part, (line,))
+
+
 def _tested(fmu: Path, usual: float) -> tuple[list[str], str]:
     """Lines on what does not hold, and the one on energy, or nothing."""
 

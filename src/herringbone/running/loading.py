@@ -25,7 +25,7 @@ from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.exporting.ssp_import import load_ssp, ssp_scene
-from herringbone.running.housing_check import HousingFault, replacement_fault
+from herringbone.running.housing_check import HousingFault, replacement_fault, untested
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
 
@@ -88,9 +88,14 @@ def with_options(
 
 
 def with_replacements(
-    system: System, files: Mapping[str, str | Path]
+    system: System, files: Mapping[str, str | Path], *, probe: bool = True
 ) -> tuple[System, list[HousingFault]]:
     """The system with FMU files in the place of instances, and what is wrong with housings.
+
+    Args:
+        system: with the instances.
+        files: by instance.
+        probe: test housings; else a line says that they are not.
 
     Raises:
         HerringboneError: there is no such instance, or an FMU cannot be used.
@@ -102,7 +107,11 @@ def with_replacements(
             require_file(Path(file))
         if Role.HOUSING in anatomy(system).parts[spec.name].roles:
             with same_folder():
-                fault = replacement_fault(spec.name, Path(file), _compliance(spec))
+                fault = (
+                    replacement_fault(spec.name, Path(file), _compliance(spec))
+                    if probe
+                    else untested(spec.name, Path(file))
+                )
             faults += [fault] if fault else []
         system = system.with_fmu(spec.name, Path(file))
     return system, faults

@@ -38,6 +38,7 @@ class Wishes:
         replace_parts: FMU files by instance.
         start_offset: in place of the scene's.
         lean: the caller takes the leaner model that a scene may have.
+        probe: foreign FMUs are tried; False: none of their steps is taken before the run.
     """
 
     t_end: float | None = None
@@ -49,6 +50,7 @@ class Wishes:
     replace_parts: Mapping[str, str | Path] = field(default_factory=dict)
     start_offset: Mapping[str, float] | None = None
     lean: bool = False
+    probe: bool = True
 
 
 class Prepared(NamedTuple):
@@ -99,7 +101,7 @@ def prepared(
             f"{folder}: an .ssp file sets all values by name; --gear and --housing are of systems"
         )
     data, fmus = split_housings(housings)
-    structure, faults = with_replacements(structure, {**w.replace_parts, **fmus})
+    structure, faults = with_replacements(structure, {**w.replace_parts, **fmus}, probe=w.probe)
     for fault in faults:
         faulty(fault)
     broken = [line for fault in faults for line in fault.lines]

@@ -56,8 +56,13 @@ def test_a_housing_that_makes_energy_is_no_success(capsys, caplog, tmp_path):
     assert found["culprit"] == "modal_housing"
     assert "modal_housing makes energy" in found["message"]
     assert "breaks the contract of housings: static compliance" in caplog.messages[0]
-    result = hb.run("gearbox", replace_parts={"modal_housing": file}, t_end=1e-4)
+    short = {"replace_parts": {"modal_housing": file}, "t_end": 1e-4}
+    result = hb.run("gearbox", **short)
     assert not result.outcome.completed
+    result = hb.run("gearbox", probe=False, **short)
+    assert result.outcome.completed
+    (line,) = (note for note in result.info.notes if "not tested as housing" in note)
+    assert line.startswith(str(file))
     assert result.outcome.reached_end
 
 

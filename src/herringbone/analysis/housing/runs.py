@@ -71,5 +71,6 @@ class Runs:
             tell(
                 f"{name} is slow, {self.seconds:.2g} s a step: the tests of what a housing must do "
                 f"take {steps} steps, {lasting(steps * self.seconds)}; 'herringbone check FMU --as "
-                f"housing --longest-trial {short}' leaves those out that take the most"
+                f"housing --longest-trial {short}' leaves those out that take the most, 'run' with "
+                "--no-probe all"
             )

@@ -40,7 +40,7 @@ def commanded(system: System, point: Point) -> dict[str, float | str]:
 def with_known_values(system: System, scene: Scene, wishes: Wishes) -> System:
     """A system with what decides on its set points: values and replaced parts."""
     fmus = split_housings(housings_of(system, scene, wishes))[1]
-    system, _ = with_replacements(system, {**wishes.replace_parts, **fmus})
+    system, _ = with_replacements(system, {**wishes.replace_parts, **fmus}, probe=wishes.probe)
     return system.with_values({**scene.values, **as_texts(wishes.values)})
 
 
