@@ -142,7 +142,7 @@ class Search:
         return (
             f"the error falls with the power {self.tried[-1].power:.2g} of the step, as where an "
             f"FMU's own integration changes with it; steps of {found.recording.step / times:.2g} s "
-            f"would take {seconds:.2g} s; --step begins there"
+            f"would take {seconds:.2g} s, and are tried with --step {found.recording.step / times:.2g}"
         )
 
     def told(self) -> Coupled:
