@@ -14,7 +14,9 @@ from herringbone.analysis.twin.block_core.steps import TOLERANCE
 from herringbone.analysis.twin.composite import MICRO_STEP, make_composite
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.analysis.twin.monolithic import Twin
+from herringbone.components.resources.loader import REPORT
 from herringbone.core import Instance
+from herringbone.core.declaring.hosting import HOLDS_NOW
 from herringbone.running.prepared import Wishes, prepared
 
 SPEED, TORQUE = "bench_controller.speed_factor", "bench_controller.torque_factor"
@@ -203,3 +205,24 @@ def test_a_micro_step_asks_for_runge_kutta_alone(rig):
         case = rig().with_values({MICRO_STEP: micro_step}).with_tolerance(1.0)
         errors.append(case.error(case.run(times), case.exact(times)))
     assert 3.5 < np.log2(errors[1] / errors[0]) < 4.5
+
+
+@pytest.mark.parametrize(
+    ("share", "tolerance", "micro_step", "told"),
+    [
+        (1.0, 1e-6, 0.0, 0),
+        (1.001, 1e-3, 0.0, 0),
+        (1.05, 1e-3, FINE, 0),
+        (1.05, 1e-3, 0.0, HOLDS_NOW),
+        (1.001, 1e-5, 0.0, HOLDS_NOW),
+    ],
+)
+def test_parameters_that_directions_follow_from_are_told(share, tolerance, micro_step, told, rig):
+    """Where the difference may cost more than the tolerance, and the condensed core steps."""
+    case = rig().with_tolerance(tolerance)
+    case.run(EVEN[:2])
+    block, index = case.instance.block, case.declaration.index
+    block[index["gearbox.gear_mesh.base_helix_angle"]] *= share
+    block[index[MICRO_STEP]] = micro_step
+    remark = rig_as_one().component.by_tolerance.remark
+    assert remark(block, case.instance.work, 2, np.zeros(REPORT)) == told

@@ -179,16 +179,3 @@ def test_a_parameter_that_the_start_does_not_suit_is_told(rig, tmp_path):
     *silent, (line,) = told
     assert silent == [[], [], []]
     assert f"{STIFFNESS} is set to 1e+08, but" in line
-
-
-def test_parameters_that_directions_follow_from_are_told(rig, tmp_path):
-    """Where the difference may cost more than the tolerance, and the condensed core steps."""
-    helix, told = "gearbox.gear_mesh.base_helix_angle", []
-    at_export = Fmi2Host(rig, tmp_path / "export").get(helix)[0]
-    cases = ((1.0, 1e-6, 0.0), (1.001, 1e-3, 0.0), (1.05, 1e-3, 2e-6), (1.05, 1e-3, 0.0),
-             (1.001, 1e-5, 0.0))  # fmt: skip
-    for number, (share, tolerance, micro_step) in enumerate(cases):
-        values = {helix: share * at_export, "micro_step": micro_step}
-        host = Fmi2Host(rig, tmp_path / str(number), tolerance=tolerance, values=values)
-        told.append(sum("as teeth, base radii and helix" in m for m in host.messages))
-    assert told == [0, 0, 0, 1, 1]
