@@ -23,7 +23,7 @@ class Oscillator:
     """A laboratory with a mass on a spring: force and torque in, place and speed out."""
 
     inputs, outputs, start, start_outputs = ("f", "g"), ("s", "v"), np.zeros(2), np.zeros(2)
-    step, restores = STEP, True
+    step, restores, turning = STEP, True, ()
 
     def __init__(self, frequency, seconds):
         w = 2.0 * np.pi * frequency
