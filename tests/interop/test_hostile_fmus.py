@@ -29,7 +29,16 @@ def system(tmp_path_factory):
 
 
 def command(system, *options):
-    own = [sys.executable, "-m", "herringbone", "run", str(system), "--step", "1e-5"]
+    own = [
+        sys.executable,
+        "-m",
+        "herringbone",
+        "run",
+        str(system),
+        "--step",
+        "1e-5",
+        "--no-pictures",
+    ]
     return [*own, *options]
 
 
