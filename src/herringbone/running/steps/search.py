@@ -139,10 +139,11 @@ class Search:
         seconds = times * found.recording.wall_seconds
         if seconds < max(_PATIENCE, _TIMES * self._seconds):
             return ""
+        step = f"{found.recording.step / times:.2g}"
         return (
             f"the error falls with the power {self.tried[-1].power:.2g} of the step, as where an "
-            f"FMU's own integration changes with it; steps of {found.recording.step / times:.2g} s "
-            f"would take {seconds:.2g} s, and are tried with --step {found.recording.step / times:.2g}"
+            f"FMU's own integration changes with it; steps of {step} s would take {seconds:.2g} s, "
+            f"and are tried with --step {step}"
         )
 
     def told(self) -> Coupled:
