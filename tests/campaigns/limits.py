@@ -7,8 +7,8 @@ grows there, growth in runs at shares `TRIED` of it (a power of e per macro step
 "ends" where a run ends early, "." where it decays, or grows by less than a run shows), and a
 verdict. With contact a run must not grow at the first share, and must grow at another one, or in
 the middle of a narrower band. A motion that does not repeat, as of teeth that rattle without a
-load, grows at any step, and tells nothing of the coupling. Systems of foreign parts alone are linear here: they decay at 0.98,
-and grow at 1.02 or in the middle of a narrower band.
+load, grows at any step, and tells nothing of the coupling. Systems of foreign parts alone are
+linear here: they decay at 0.98, and grow at 1.02 or in the middle of a narrower band.
 """
 
 import argparse
