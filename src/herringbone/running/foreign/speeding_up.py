@@ -7,7 +7,6 @@ go with that.
 """
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from herringbone.analysis.stability.surrogates.inertia import by_acceleration
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError
+from herringbone.core.activity import tell
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.pairs.carrying_flank import loaded_start
@@ -35,7 +35,7 @@ def speeding_up(system: System, strangers: Strangers) -> System:
     """The system with its own parts as they are when foreign ones are sped up with them.
 
     As it is where foreign parts are brought to the start, where torques balance without them, or
-    where what they answer to acceleration leaves no mesh closed.
+    where what they answer to acceleration leaves no mesh closed, which a line tells.
 
     Args:
         system: under load, see `under_load`.
@@ -46,18 +46,26 @@ def speeding_up(system: System, strangers: Strangers) -> System:
     own = known_parts(system)
     if not own.parts:
         return system
-    with suppress(HerringboneError, np.linalg.LinAlgError):
-        crossing = _crossing(linear_network(system, strangers=strangers)[0], strangers)
-        taken = list(dict.fromkeys(of for of, to in crossing if to[0] in strangers))
-        motion = own_motion(own, _NOTHING, [".".join(of) for of in taken])
-        if abs(motion.acceleration) > _STEADY:
-            answers = _answers(strangers, crossing, motion.outputs)
+    try:
+        return system.with_values(_sped_up(system, own, strangers))
+    except (HerringboneError, np.linalg.LinAlgError) as error:
+        tell(f"teeth are taken as the parts of this package alone load them: {error}")
+        return system
 
-            def accelerated(known: System) -> Values:
-                return answered_equilibrium(Twin(known), answers).values
 
-            return system.with_values(loaded_start(own, accelerated)[0])
-    return system
+def _sped_up(system: System, own: System, strangers: Strangers) -> Values:
+    """Start values of own parts, none if torques balance; raises HerringboneError, LinAlgError."""
+    crossing = _crossing(linear_network(system, strangers=strangers)[0], strangers)
+    taken = list(dict.fromkeys(of for of, to in crossing if to[0] in strangers))
+    motion = own_motion(own, _NOTHING, [".".join(of) for of in taken])
+    if not abs(motion.acceleration) > _STEADY:
+        return {}
+    answers = _answers(strangers, crossing, motion.outputs)
+
+    def accelerated(known: System) -> Values:
+        return answered_equilibrium(Twin(known), answers).values
+
+    return loaded_start(own, accelerated)[0]
 
 
 def _crossing(network: Network, strangers: Strangers) -> list[tuple[Variable, Variable]]:
