@@ -8,7 +8,7 @@ from herringbone.core.activity import tell
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import AUTO, LI, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import foreign_fmu_policy
-from herringbone.cosim.simulation import check_grid
+from herringbone.cosim.simulation import check_grid, check_records
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.fmi.kind import AUTO as AUTO_FMU
@@ -147,7 +147,7 @@ def run(
             system,
             scene,
             operated(system, scene, wishes, speed, torque),
-            check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
+            check=lambda scene: _check_times(scene, step),
             faulty=faulty,
             trial_step=(step or (coupling or LI()).start_step) if probe else None,
         )
@@ -174,6 +174,12 @@ def run(
         )
         found = coupled_run(structure, chosen, asked, heard, reference=reference, verify=verify)
         return with_faults(found, faults)
+
+
+def _check_times(scene: Scene, step: float | None) -> None:
+    """Check durations of a run before anything takes long; raises ParameterError."""
+    check_grid(scene.t_end, step, scene.record_step)
+    check_records(scene.t_end, scene.record_step)
 
 
 def _asked_for(algorithm: str | Algorithm | None) -> Algorithm | None:
