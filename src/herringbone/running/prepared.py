@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from herringbone.analysis.figures.sensing.sensors import check_sensors
+from herringbone.analysis.figures.system_housings import implausible_housings
 from herringbone.core import EquilibriumError, ParameterError
 from herringbone.core.declaring.roles import Role
 from herringbone.cosim.ssp.format import is_ssp
@@ -113,6 +114,7 @@ def prepared(
     try:
         structure, notes = started(structure, chosen, trial_step)
     except EquilibriumError as error:
+        lines = (*lines, *implausible_housings(structure))
         raise EquilibriumError("; ".join((*lines, str(error)))) from error
     structure, impacts = with_impacts(structure, jobs)
     return Prepared(structure, chosen, (*said, *lines, *notes, *impacts, *broken))
