@@ -119,7 +119,7 @@ def _start_speed(system: System) -> str:
     if not pairs or not system.foreign_parts:
         return ""
     speeds = " and ".join(f"{_speed_of(system, pair)}=RAD_PER_S" for pair in pairs)
-    return f"; at a start that is no equilibrium gears turn as --set {speeds} says, else not"
+    return f"; where the start is no equilibrium, --set {speeds} is the gears' speed, else 0"
 
 
 def _speed_of(system: System, pair: str) -> str:

@@ -46,8 +46,8 @@ def test_gears_beside_foreign_parts_have_a_speed_at_the_start():
         addressed(axle, "speed")
     foreign = axle.with_fmu("machine", Path("Motor.fmu"))
     said = (
-        r"no equilibrium gears turn as --set gearbox\.gear_mesh\.der\(angle\)=RAD_PER_S says, else "
-        "not$"
+        r"the start is no equilibrium, --set gearbox\.gear_mesh\.der\(angle\)=RAD_PER_S is the "
+        "gears' speed, else 0$"
     )
     with pytest.raises(ParameterError, match=said):
         addressed(foreign, "speed")
