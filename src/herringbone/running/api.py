@@ -20,7 +20,7 @@ from herringbone.running.fused.fused import (
     check_kind,
     check_record,
 )
-from herringbone.running.housing_check import HousingFault, with_faults
+from herringbone.running.housing_check import HousingRemarks, with_remarks
 from herringbone.running.operating.by_hand import said_by_hand
 from herringbone.running.operating.commanded import operated
 from herringbone.running.operating.lean import certified_row, lean_notes
@@ -128,11 +128,11 @@ def run(
     coupling = _asked_for(algorithm)
     if tolerance is not None:
         check_tolerance(tolerance)
-    faults: list[HousingFault] = []
+    remarks: list[HousingRemarks] = []
 
-    def faulty(fault: HousingFault) -> None:
-        faults.append(fault)
-        for line in fault.lines:
+    def remarked(own: HousingRemarks) -> None:
+        remarks.append(own)
+        for line in own.lines:
             tell(line)
 
     wishes = Wishes(
@@ -148,7 +148,7 @@ def run(
             scene,
             operated(system, scene, wishes, speed, torque),
             check=lambda scene: _check_times(scene, step),
-            faulty=faulty,
+            remarked=remarked,
             trial_step=(step or (coupling or LI()).start_step) if probe else None,
         )
         by_hand = said_by_hand(system, scene, wishes, Point(speed, torque))
@@ -173,7 +173,7 @@ def run(
             left_out=left_out,
         )
         found = coupled_run(structure, chosen, asked, heard, reference=reference, verify=verify)
-        return with_faults(found, faults)
+        return with_remarks(found, remarks)
 
 
 def _check_times(scene: Scene, step: float | None) -> None:

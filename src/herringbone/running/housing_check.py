@@ -18,8 +18,8 @@ _SIZE = "compliance"
 
 
 @dataclass(frozen=True)
-class HousingFault:
-    """What is wrong with a housing FMU that takes part in a run.
+class HousingRemarks:
+    """What is to be said of a housing FMU that takes part in a run.
 
     Attributes:
         part: whose place it takes.
@@ -32,7 +32,7 @@ class HousingFault:
     energy: str = ""
 
 
-def replacement_fault(part: str, fmu: Path, usual: float) -> HousingFault | None:
+def replacement_remarks(part: str, fmu: Path, usual: float) -> HousingRemarks | None:
     """What a housing FMU that replaces a part does not hold; tested once per content.
 
     Wrong variables, and units of another dimension, are refused by the wiring, too.
@@ -51,16 +51,16 @@ def replacement_fault(part: str, fmu: Path, usual: float) -> HousingFault | None
         try:
             found = _tested(fmu, usual)
         except HerringboneError as error:
-            return HousingFault(part, (f"{fmu} could not be tested as housing: {error}",))
+            return HousingRemarks(part, (f"{fmu} could not be tested as housing: {error}",))
         keep(known, found)
     lines, energy = found
-    return HousingFault(part, tuple(lines), energy) if lines else None
+    return HousingRemarks(part, tuple(lines), energy) if lines else None
 
 
-def untested(part: str, fmu: Path) -> HousingFault:
+def untested(part: str, fmu: Path) -> HousingRemarks:
     """What is said of a housing FMU that replaces a part where no trial steps are to be made."""
     line = f"{fmu} was not tested as housing, as no trial steps were to be made (no probe)"
-    return HousingFault(part, (line,))
+    return HousingRemarks(part, (line,))
 
 
 def _tested(fmu: Path, usual: float) -> tuple[list[str], str]:
@@ -82,13 +82,13 @@ def _tested(fmu: Path, usual: float) -> tuple[list[str], str]:
     return lines, next(map(broken, of_energy(findings)), "")
 
 
-def with_faults(result: Result, faults: Sequence[HousingFault]) -> Result:
+def with_remarks(result: Result, remarks: Sequence[HousingRemarks]) -> Result:
     """The result, which has not completed if a housing made energy; of one that diverged, why."""
     outcome = result.outcome
-    if faults and outcome.unstable:
-        said = f"{outcome.message}; {faults[0].part}: {faults[0].lines[0]}"
+    if remarks and outcome.unstable:
+        said = f"{outcome.message}; {remarks[0].part}: {remarks[0].lines[0]}"
         return replace(result, outcome=replace(outcome, message=said))
-    active = [fault for fault in faults if fault.energy]
+    active = [own for own in remarks if own.energy]
     if not active or outcome.kind is not OutcomeKind.COMPLETED:
         return result
     said = (
