@@ -7,11 +7,13 @@ from pathlib import Path
 
 from herringbone.analysis.finding import Finding, Verdict
 from herringbone.analysis.housing.contract import check_housing, of_energy
-from herringbone.core import HerringboneError, Outcome, OutcomeKind
+from herringbone.core import HerringboneError, Outcome, OutcomeKind, StructureError
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import sources_key
 from herringbone.core.places.paths import cache_folder
+from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.opening import open_fmu
+from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 
 _SIZE = "compliance"
@@ -30,6 +32,28 @@ class HousingRemarks:
     part: str
     lines: tuple[str, ...]
     energy: str = ""
+
+
+def refuse_other_kinds(system: System, part: str, fmu: Path) -> None:
+    """Check that an FMU has anything of what a housing is joined by; what else lacks is remarked.
+
+    Args:
+        system: in which the part is joined.
+        part: that is replaced.
+        fmu: in its place.
+
+    Raises:
+        FmuError: it cannot be read.
+        StructureError: nothing that joins the part is there: it is something else.
+    """
+    ends = (system.split(path) for pair in system.connections for path in pair)
+    joined = dict.fromkeys(name for owner, name in ends if owner == part)
+    known = [variable.name for variable in read_fmu(fmu).modelVariables]
+    if joined and not any(v == name or v.startswith(f"{name}.") for v in known for name in joined):
+        raise StructureError(
+            f"{part}: {fmu} is no housing: it has none of {', '.join(joined)}, by which "
+            f"{system.name} joins it; see 'herringbone check {fmu} --as housing'"
+        )
 
 
 def replacement_remarks(part: str, fmu: Path, usual: float) -> HousingRemarks | None:

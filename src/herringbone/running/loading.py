@@ -25,7 +25,12 @@ from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.exporting.ssp_import import load_ssp, ssp_scene
-from herringbone.running.housing_check import HousingRemarks, replacement_remarks, untested
+from herringbone.running.housing_check import (
+    HousingRemarks,
+    refuse_other_kinds,
+    replacement_remarks,
+    untested,
+)
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
 
@@ -106,6 +111,8 @@ def with_replacements(
         with _named(spec.name):
             require_file(Path(file))
         if Role.HOUSING in anatomy(system).parts[spec.name].roles:
+            with _named(spec.name):
+                refuse_other_kinds(system, spec.name, Path(file))
             with same_folder():
                 own = (
                     replacement_remarks(spec.name, Path(file), _compliance(spec))

@@ -230,8 +230,9 @@ def test_unknown_system(refused):
 
 XML = (
     '<?xml version="1.0"?>{before}<fmiModelDescription fmiVersion="{version}" modelName="m" '
-    'guid="0"><CoSimulation modelIdentifier="m"/><ModelVariables/><ModelStructure/>'
-    "</fmiModelDescription>"
+    'guid="0"><CoSimulation modelIdentifier="m"/><ModelVariables><ScalarVariable '
+    'name="pinion_left.f_x" valueReference="0" causality="input"><Real start="0"/></ScalarVariable>'
+    "</ModelVariables><ModelStructure/></fmiModelDescription>"
 )
 BINARY = f"binaries/{fmpy.platform}/m{fmpy.sharedLibraryExtension}"
 
