@@ -32,6 +32,7 @@ class Cheap:
     log: str = ""
     modules: tuple[str, ...] = ()
     has_series: bool = False
+    columns: tuple[str, ...] = ()
 
     def opened(self, base):
         del base

@@ -89,10 +89,8 @@ def at_pinion(
             "set what drives and loads them by values"
         )
     found: dict[str, float] = {}
-    declaration = component(str(system.part(pairs[0]).component)).declaration
     if speed is not None:
-        turning = next(v.name for v in declaration.states if v.steady == "rotating")
-        found[f"{pairs[0]}.der({turning})"] = speed
+        found[_speed_of(system, pairs[0])] = speed
     if torque is not None:
         (pinion,) = known.ports(pairs[0], PortKind.FLANGE, GEARS[0])
         found[f"{pairs[0]}.{pinion.name}.tau"] = torque
@@ -108,8 +106,27 @@ def _check_free(system: System, name: str) -> None:
         such_as = f", such as {known[0]}" if known else ""
         raise ParameterError(
             f"{name}: no part of {system.name} declares a {QUANTITIES[name]}; vary what drives and "
-            f"loads it with --set{such_as}"
+            f"loads it with --set{such_as}{_start_speed(system) if name == SPEED else ''}"
         ) from None
+
+
+def _start_speed(system: System) -> str:
+    """How gears beside foreign parts come to a speed, for the end of a message; "": not at all.
+
+    Beside own parts alone the start is the steady rotation, which decides on it.
+    """
+    pairs = [n for n in anatomy(system).with_role(Role.GEAR_PAIR) if not system.part(n).foreign]
+    if not pairs or not system.foreign_parts:
+        return ""
+    speeds = " and ".join(f"{_speed_of(system, pair)}=RAD_PER_S" for pair in pairs)
+    return f"; where the start is no equilibrium, --set {speeds} is the gears' speed, else 0"
+
+
+def _speed_of(system: System, pair: str) -> str:
+    """Path of the state that is the speed of a gear pair's pinion."""
+    declaration = component(str(system.part(pair).component)).declaration
+    turning = next(v.name for v in declaration.states if v.steady == "rotating")
+    return f"{pair}.der({turning})"
 
 
 def _drives(name: str) -> bool:

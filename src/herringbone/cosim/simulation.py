@@ -66,6 +66,15 @@ def check_grid(t_end: float, step: float | None, record_step: float) -> None:
         )
 
 
+def check_records(t_end: float, record_step: float) -> None:
+    """Check that a run records more than its start; raises ParameterError."""
+    if record_step > t_end * (1.0 + 1e-9):
+        raise ParameterError(
+            f"record_step = {record_step:g} s is longer than the run, t_end = {t_end:g} s: only "
+            "its start would be recorded; use a shorter record_step or a longer t_end"
+        )
+
+
 def simulate(
     system: System,
     parts: Sequence[Part],

@@ -1,9 +1,8 @@
 """Result of a run: a table of recorded outputs, units, outcome, and how it was computed."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +15,7 @@ from herringbone.core.declaring.roles import Role
 from herringbone.core.facts import Facts
 from herringbone.core.names import shown
 from herringbone.core.places.part_path import PartPath, find_columns
+from herringbone.core.places.wrong_column import meant_columns
 from herringbone.result.budget import BudgetRow
 from herringbone.result.folder.writing import replacing
 from herringbone.result.run_info import RunInfo
@@ -83,7 +83,7 @@ class Result(Facts):
         found = find_columns(self.parts, every, patterns)
         for pattern, own in found.items():
             if not own:
-                hint = self._hint(pattern, self.channels)
+                hint = meant_columns(pattern, every, self.channels)
                 raise ParameterError(f"no column matches '{pattern}'; {hint}")
         meant = {name for own in found.values() for name in own}
         return [name for name in every if name in meant]
@@ -116,17 +116,9 @@ class Result(Facts):
             meant = " or ".join(found[:_SHOWN]) + more
             raise ParameterError(f"{shown(name)} may mean {meant}; write more of it")
         if not found:
-            raise ParameterError(f"there is no column {shown(name)}; {self._hint(str(name))}")
+            hint = meant_columns(str(name), [*self._shown, TIME])
+            raise ParameterError(f"there is no column {shown(name)}; {hint}")
         return found[0]
-
-    def _hint(self, text: str, others: Iterable[str] = ()) -> str:
-        """What a name of no column may mean: columns, as much of them as was written; `others`."""
-        known = {other: other for other in others}
-        for column in self.data.columns:
-            for k in range(column.count(".") + 1):
-                known.setdefault(column.split(".", k)[-1], column)
-        near = dict.fromkeys(known[name] for name in get_close_matches(text, known, 3))
-        return f"did you mean {' or '.join(near)}" if near else "see result.data.columns"
 
     def __getitem__(self, name: str) -> pd.Series:
         """Recorded values of a column (n,), SI unit; see `column`."""

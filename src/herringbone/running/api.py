@@ -8,7 +8,7 @@ from herringbone.core.activity import tell
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import AUTO, LI, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import foreign_fmu_policy
-from herringbone.cosim.simulation import check_grid
+from herringbone.cosim.simulation import check_grid, check_records
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.fmi.kind import AUTO as AUTO_FMU
@@ -20,7 +20,7 @@ from herringbone.running.fused.fused import (
     check_kind,
     check_record,
 )
-from herringbone.running.housing_check import HousingFault, with_faults
+from herringbone.running.housing_check import HousingRemarks, with_remarks
 from herringbone.running.operating.by_hand import said_by_hand
 from herringbone.running.operating.commanded import operated
 from herringbone.running.operating.lean import certified_row, lean_notes
@@ -128,11 +128,11 @@ def run(
     coupling = _asked_for(algorithm)
     if tolerance is not None:
         check_tolerance(tolerance)
-    faults: list[HousingFault] = []
+    remarks: list[HousingRemarks] = []
 
-    def faulty(fault: HousingFault) -> None:
-        faults.append(fault)
-        for line in fault.lines:
+    def remarked(own: HousingRemarks) -> None:
+        remarks.append(own)
+        for line in own.lines:
             tell(line)
 
     wishes = Wishes(
@@ -147,8 +147,8 @@ def run(
             system,
             scene,
             operated(system, scene, wishes, speed, torque),
-            check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
-            faulty=faulty,
+            check=lambda scene: _check_times(scene, step),
+            remarked=remarked,
             trial_step=(step or (coupling or LI()).start_step) if probe else None,
         )
         by_hand = said_by_hand(system, scene, wishes, Point(speed, torque))
@@ -173,7 +173,13 @@ def run(
             left_out=left_out,
         )
         found = coupled_run(structure, chosen, asked, heard, reference=reference, verify=verify)
-        return with_faults(found, faults)
+        return with_remarks(found, remarks)
+
+
+def _check_times(scene: Scene, step: float | None) -> None:
+    """Check durations of a run before anything takes long; raises ParameterError."""
+    check_grid(scene.t_end, step, scene.record_step)
+    check_records(scene.t_end, scene.record_step)
 
 
 def _asked_for(algorithm: str | Algorithm | None) -> Algorithm | None:

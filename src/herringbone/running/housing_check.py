@@ -7,19 +7,21 @@ from pathlib import Path
 
 from herringbone.analysis.finding import Finding, Verdict
 from herringbone.analysis.housing.contract import check_housing, of_energy
-from herringbone.core import HerringboneError, Outcome, OutcomeKind
+from herringbone.core import HerringboneError, Outcome, OutcomeKind, StructureError
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import sources_key
 from herringbone.core.places.paths import cache_folder
+from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.opening import open_fmu
+from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 
 _SIZE = "compliance"
 
 
 @dataclass(frozen=True)
-class HousingFault:
-    """What is wrong with a housing FMU that takes part in a run.
+class HousingRemarks:
+    """What is to be said of a housing FMU that takes part in a run.
 
     Attributes:
         part: whose place it takes.
@@ -32,7 +34,29 @@ class HousingFault:
     energy: str = ""
 
 
-def replacement_fault(part: str, fmu: Path, usual: float) -> HousingFault | None:
+def refuse_other_kinds(system: System, part: str, fmu: Path) -> None:
+    """Check that an FMU has anything of what a housing is joined by; what else lacks is remarked.
+
+    Args:
+        system: in which the part is joined.
+        part: that is replaced.
+        fmu: in its place.
+
+    Raises:
+        FmuError: it cannot be read.
+        StructureError: nothing that joins the part is there: it is something else.
+    """
+    ends = (system.split(path) for pair in system.connections for path in pair)
+    joined = dict.fromkeys(name for owner, name in ends if owner == part)
+    known = [variable.name for variable in read_fmu(fmu).modelVariables]
+    if joined and not any(v == name or v.startswith(f"{name}.") for v in known for name in joined):
+        raise StructureError(
+            f"{part}: {fmu} is no housing: it has none of {', '.join(joined)}, by which "
+            f"{system.name} joins it; see 'herringbone check {fmu} --as housing'"
+        )
+
+
+def replacement_remarks(part: str, fmu: Path, usual: float) -> HousingRemarks | None:
     """What a housing FMU that replaces a part does not hold; tested once per content.
 
     Wrong variables, and units of another dimension, are refused by the wiring, too.
@@ -51,16 +75,16 @@ def replacement_fault(part: str, fmu: Path, usual: float) -> HousingFault | None
         try:
             found = _tested(fmu, usual)
         except HerringboneError as error:
-            return HousingFault(part, (f"{fmu} could not be tested as housing: {error}",))
+            return HousingRemarks(part, (f"{fmu} could not be tested as housing: {error}",))
         keep(known, found)
     lines, energy = found
-    return HousingFault(part, tuple(lines), energy) if lines else None
+    return HousingRemarks(part, tuple(lines), energy) if lines else None
 
 
-def untested(part: str, fmu: Path) -> HousingFault:
+def untested(part: str, fmu: Path) -> HousingRemarks:
     """What is said of a housing FMU that replaces a part where no trial steps are to be made."""
     line = f"{fmu} was not tested as housing, as no trial steps were to be made (no probe)"
-    return HousingFault(part, (line,))
+    return HousingRemarks(part, (line,))
 
 
 def _tested(fmu: Path, usual: float) -> tuple[list[str], str]:
@@ -82,13 +106,13 @@ def _tested(fmu: Path, usual: float) -> tuple[list[str], str]:
     return lines, next(map(broken, of_energy(findings)), "")
 
 
-def with_faults(result: Result, faults: Sequence[HousingFault]) -> Result:
+def with_remarks(result: Result, remarks: Sequence[HousingRemarks]) -> Result:
     """The result, which has not completed if a housing made energy; of one that diverged, why."""
     outcome = result.outcome
-    if faults and outcome.unstable:
-        said = f"{outcome.message}; {faults[0].part}: {faults[0].lines[0]}"
+    if remarks and outcome.unstable:
+        said = f"{outcome.message}; {remarks[0].part}: {remarks[0].lines[0]}"
         return replace(result, outcome=replace(outcome, message=said))
-    active = [fault for fault in faults if fault.energy]
+    active = [own for own in remarks if own.energy]
     if not active or outcome.kind is not OutcomeKind.COMPLETED:
         return result
     said = (

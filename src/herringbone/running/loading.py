@@ -25,7 +25,12 @@ from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.exporting.ssp_import import load_ssp, ssp_scene
-from herringbone.running.housing_check import HousingFault, replacement_fault, untested
+from herringbone.running.housing_check import (
+    HousingRemarks,
+    refuse_other_kinds,
+    replacement_remarks,
+    untested,
+)
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
 
@@ -89,8 +94,8 @@ def with_options(
 
 def with_replacements(
     system: System, files: Mapping[str, str | Path], *, probe: bool = True
-) -> tuple[System, list[HousingFault]]:
-    """The system with FMU files in the place of instances, and what is wrong with housings.
+) -> tuple[System, list[HousingRemarks]]:
+    """The system with FMU files in the place of instances, and what is to be said of housings.
 
     Args:
         system: with the instances.
@@ -100,21 +105,23 @@ def with_replacements(
     Raises:
         HerringboneError: there is no such instance, or an FMU cannot be used.
     """
-    faults: list[HousingFault] = []
+    remarks: list[HousingRemarks] = []
     for asked, file in files.items():
         spec = system.part(asked)
         with _named(spec.name):
             require_file(Path(file))
         if Role.HOUSING in anatomy(system).parts[spec.name].roles:
+            with _named(spec.name):
+                refuse_other_kinds(system, spec.name, Path(file))
             with same_folder():
-                fault = (
-                    replacement_fault(spec.name, Path(file), _compliance(spec))
+                own = (
+                    replacement_remarks(spec.name, Path(file), _compliance(spec))
                     if probe
                     else untested(spec.name, Path(file))
                 )
-            faults += [fault] if fault else []
+            remarks += [own] if own else []
         system = system.with_fmu(spec.name, Path(file))
-    return system, faults
+    return system, remarks
 
 
 def _compliance(spec: PartSpec) -> float:

@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from herringbone.analysis.figures.sensing.sensors import check_sensors
+from herringbone.analysis.figures.system_housings import implausible_housings
 from herringbone.core import EquilibriumError, ParameterError
 from herringbone.core.declaring.roles import Role
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.running.chosen_parts import part_for
-from herringbone.running.housing_check import HousingFault
+from herringbone.running.housing_check import HousingRemarks
 from herringbone.running.housings import split_housings, with_housing_data
 from herringbone.running.loading import load_scene, load_system, with_options, with_replacements
 from herringbone.running.operating.lean import refuse_lean
@@ -66,7 +67,7 @@ def prepared(
     scene: str | Path | Scene | None,
     wishes: Wishes,
     check: Callable[[Scene], None] = lambda scene: None,
-    faulty: Callable[[HousingFault], None] = lambda fault: None,
+    remarked: Callable[[HousingRemarks], None] = lambda remarks: None,
     trial_step: float | None = None,
 ) -> Prepared:
     """Load a system and a scene, and set what is wished.
@@ -78,7 +79,7 @@ def prepared(
         system, scene: see `api.run`.
         wishes: over these.
         check: called with the scene before anything takes long.
-        faulty: called with what is wrong with an FMU that replaces a housing.
+        remarked: called with what is to be said of an FMU that replaces a housing.
         trial_step: see `started`.
 
     Raises:
@@ -101,10 +102,10 @@ def prepared(
             f"{folder}: an .ssp file sets all values by name; --gear and --housing are of systems"
         )
     data, fmus = split_housings(housings)
-    structure, faults = with_replacements(structure, {**w.replace_parts, **fmus}, probe=w.probe)
-    for fault in faults:
-        faulty(fault)
-    broken = [line for fault in faults for line in fault.lines]
+    structure, remarks = with_replacements(structure, {**w.replace_parts, **fmus}, probe=w.probe)
+    for own in remarks:
+        remarked(own)
+    of_housings = [line for own in remarks for line in own.lines]
     structure = with_housing_data(structure, data).with_values(chosen.values)
     check_sensors(structure)
     structure, jobs, said = with_gears(structure, gears)
@@ -113,9 +114,10 @@ def prepared(
     try:
         structure, notes = started(structure, chosen, trial_step)
     except EquilibriumError as error:
+        lines = (*lines, *implausible_housings(structure))
         raise EquilibriumError("; ".join((*lines, str(error)))) from error
     structure, impacts = with_impacts(structure, jobs)
-    return Prepared(structure, chosen, (*said, *lines, *notes, *impacts, *broken))
+    return Prepared(structure, chosen, (*said, *lines, *notes, *impacts, *of_housings))
 
 
 def housings_of(system: System, scene: Scene, wishes: Wishes) -> dict[str, str | Path]:

@@ -18,6 +18,7 @@ from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes
 from herringbone.studies.axes import numbers
 from herringbone.studies.computing import Progress
+from herringbone.studies.evaluators.asked_columns import check_columns
 from herringbone.studies.evaluators.evaluator import Base, Evaluator
 from herringbone.studies.evaluators.settled import Settled
 from herringbone.studies.evaluators.steady import Steady
@@ -94,6 +95,7 @@ def sweep(
     structure, folder = load_system(base.system)
     known = with_known_values(structure, load_scene(folder, named), wishes)
     chosen = evaluator or _suited(known, wishes)
+    check_columns(known, chosen.columns)
     if series and not chosen.has_series:
         raise _of_runs("series")
     units = {name: _unit(known, name) for name in study.names}

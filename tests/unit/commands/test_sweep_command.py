@@ -33,6 +33,8 @@ def test_a_table_in_the_units_that_were_asked_for(tmp_path, capsys):
         (["sweep", "gearbox"], "at least one parameter"),
         (["sweep", "gearbox", "--speed", "1:2"], "START:STOP:COUNT"),
         (["sweep", "gearbox", "--set", "gear_mesh.nothing=1,2"], "no variable 'nothing'"),
+        ([*GEARBOX, "--column", "*.pinion.phy"], "did you mean gear_mesh.pinion.phi"),
+        ([*GEARBOX, "--column", "nosuch"], "no output matches 'nosuch'; groups of channels: bear"),
         ([*GEARBOX, "--t-end", "0.1"], "--transient"),
         ([*GEARBOX, "--algorithm", "li"], "--transient"),
         ([*GEARBOX, "--series"], "--transient"),

@@ -23,7 +23,7 @@ from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.divergence import is_sudden
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.rows.stream import Streaming
-from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.simulation import check_records, make_grid, simulate
 from herringbone.cosim.structure.system import System
 
 PROBLEM = TwoMass(zeta=0.05)
@@ -50,6 +50,14 @@ def test_grid_refuses_what_is_no_number():
 def test_grid_refuses_an_end_before_the_first_step():
     with pytest.raises(ParameterError, match=r"t_end = 0\.05 s is shorter than one step of 0\.1 s"):
         make_grid(0.05, 0.1, 0.1)
+
+
+def test_a_run_records_more_than_its_start():
+    check_records(0.2, 0.2)
+    check_records(0.3, 3 * 0.1)  # longer by a rounding
+    said = r"record_step = 1 s is longer than the run, t_end = 0\.2 s: only its start would be"
+    with pytest.raises(ParameterError, match=said):
+        check_records(0.2, 1.0)
 
 
 @pytest.mark.parametrize(

@@ -51,7 +51,7 @@ def test_what_may_mean_many_shows_a_few(result):
     ("name", "said"),
     [
         ("mesh_left.forse", "did you mean gearbox.gear_mesh.mesh_left.force or "),
-        ("qqqq", "no column 'qqqq'; see result.data.columns"),
+        ("qqqq", "no column 'qqqq'; columns: "),
     ],
 )
 def test_a_short_name_that_is_misspelt(result, name, said):
@@ -63,6 +63,19 @@ def test_a_short_name_that_is_misspelt(result, name, said):
 def test_a_group_that_is_misspelt(result):
     with pytest.raises(ParameterError, match="no column matches 'bearing_forces'; did you mean be"):
         result.plot("bearing_forces")
+
+
+def test_a_pattern_of_nothing_shows_some_columns(result):
+    """The command line has no other place where they could be looked up."""
+    shown = [column for column in result.data if column != "time"]
+    said = (
+        f"no column matches 'zz*'; groups of channels: {', '.join(result.channels)}; "
+        f"columns: {len(shown)}, such as {', '.join(shown[:3])}"
+    )
+    with pytest.raises(ParameterError, match=re.escape(said)):
+        result.columns("zz*")
+    with pytest.raises(ParameterError, match=r"mean gearbox\.gear_mesh\.mesh_left\.force or "):
+        result.columns("*.mesh_left.forse")
 
 
 def test_a_table_goes_into_a_folder_that_is_there(result, tmp_path):

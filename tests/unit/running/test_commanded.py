@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -36,6 +37,22 @@ def test_free_flanges_take_them():
 def test_what_declares_none_is_refused(system, name):
     with pytest.raises(ParameterError, match=f"{name}: no part of {system} declares"):
         addressed(read_system(system), name)
+
+
+def test_gears_beside_foreign_parts_have_a_speed_at_the_start():
+    """No steady rotation decides on it; beside own parts one does, and nothing is promised."""
+    axle = read_system("e_axle")
+    with pytest.raises(ParameterError, match=r"such as machine$"):
+        addressed(axle, "speed")
+    foreign = axle.with_fmu("machine", Path("Motor.fmu"))
+    said = (
+        r"the start is no equilibrium, --set gearbox\.gear_mesh\.der\(angle\)=RAD_PER_S is the "
+        "gears' speed, else 0$"
+    )
+    with pytest.raises(ParameterError, match=said):
+        addressed(foreign, "speed")
+    with pytest.raises(ParameterError, match=r"--set, such as road$"):
+        addressed(foreign, "torque")
 
 
 def test_several_are_refused():

@@ -183,6 +183,7 @@ def test_system_file(refused, tmp_path, text, said):
         ("--t-end=1e6 --record-step=1e-6 --step=1e-6", "1000000000001 records of "),
         ("--t-end=1e6 --record-step=1e-6 --step=1e-6", "use a longer record_step (--record-step)"),
         ("--step=0.1", "t_end = 0.001 s is shorter than one step of 0.1 s"),
+        ("--record-step=1", "record_step = 1 s is longer than the run, t_end = 0.001 s"),
         ("--record-step=nan", "record_step = nan s: it must be positive and finite"),
         ("--scene=nope", "there is no scene 'nope'; test_rig has: loaded, runup, separation"),
         ("--algorithm=nope", "there is no algorithm 'nope'; there are: auto, jacobi,"),
@@ -229,8 +230,9 @@ def test_unknown_system(refused):
 
 XML = (
     '<?xml version="1.0"?>{before}<fmiModelDescription fmiVersion="{version}" modelName="m" '
-    'guid="0"><CoSimulation modelIdentifier="m"/><ModelVariables/><ModelStructure/>'
-    "</fmiModelDescription>"
+    'guid="0"><CoSimulation modelIdentifier="m"/><ModelVariables><ScalarVariable '
+    'name="pinion_left.f_x" valueReference="0" causality="input"><Real start="0"/></ScalarVariable>'
+    "</ModelVariables><ModelStructure/></fmiModelDescription>"
 )
 BINARY = f"binaries/{fmpy.platform}/m{fmpy.sharedLibraryExtension}"
 

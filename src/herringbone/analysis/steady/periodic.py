@@ -11,6 +11,7 @@ from herringbone.analysis.steady.outputs import Harmonics, level_of
 from herringbone.core import ParameterError
 from herringbone.core.facts import Facts
 from herringbone.core.places.part_path import PartPath, find_columns
+from herringbone.core.places.wrong_column import meant_columns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -130,8 +131,8 @@ class PeriodicMotion(Facts):
                 or find_columns(self.parts, self.columns, [name])[name]
             )
             if not own:
-                groups = ", ".join(self.channels)
-                raise ParameterError(f"no output matches '{name}'; groups of channels: {groups}")
+                hint = meant_columns(name, self.columns, self.channels)
+                raise ParameterError(f"no output matches '{name}'; {hint}")
             found.update(dict.fromkeys(own))
         return list(found)
 

@@ -39,8 +39,17 @@ _networks: Remembered[Network] = Remembered(32)
 """By connections and components, without parts: values change nothing in it."""
 
 
-def refuse_foreign_parts(system: System) -> None:
+def refuse_foreign_parts(
+    system: System,
+    then: str = "there is no monolithic reference for this system",
+    instead: str = "",
+) -> None:
     """Check that the equations of all parts are known.
+
+    Args:
+        system: of the parts.
+        then: what follows if they are not.
+        instead: what to do.
 
     Raises:
         StructureError: a part is a foreign FMU.
@@ -50,7 +59,7 @@ def refuse_foreign_parts(system: System) -> None:
         what, whose = ("is a foreign FMU", "its") if one else ("are foreign FMUs", "their")
         raise StructureError(
             f"{', '.join(system.foreign_parts)} {what}: {whose} equations are not known, so "
-            "that there is no monolithic reference for this system"
+            f"that {then}{instead and f'; {instead}'}"
         )
 
 

@@ -2,13 +2,13 @@
 
 import argparse
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 from tqdm import tqdm
 
-from herringbone.analysis.finding import Finding, Report, Verdict
+from herringbone.analysis.finding import Finding, Report, Verdict, not_tested
 from herringbone.analysis.flange.contract import check_flanges
 from herringbone.analysis.housing.contract import STEP, check_housing, usual_compliance
 from herringbone.commands.options import assignments
@@ -84,9 +84,19 @@ def _cells(finding: Finding) -> tuple[str, ...]:
 
 
 def _table(findings: Sequence[Finding]) -> str:
-    rows = [_HEADER, *map(_cells, findings)]
+    rows = [_HEADER, *map(_cells, _said_once(findings))]
     widths = [max(len(row[k]) for row in rows) for k in range(len(_HEADER))]
     return "\n".join(
         "  " + "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip()
         for row in rows
     )
+
+
+def _said_once(findings: Sequence[Finding]) -> Iterator[Finding]:
+    """The findings; those that were not possible for a reason that stands above refer to it."""
+    told: dict[str, str] = {}
+    for finding in findings:
+        first = finding.test
+        if finding.verdict is Verdict.NOT_TESTED:
+            first = told.setdefault(finding.measured, first)
+        yield finding if first == finding.test else not_tested(finding.test, f"see '{first}'")

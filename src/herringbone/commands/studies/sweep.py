@@ -60,7 +60,8 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     add_cells(sub)
     sub.add_argument(
         "--column", action="append", default=[], metavar="OUTPUTS",
-        help="output or pattern with levels of its own, besides the groups; may be repeated",
+        help="output, pattern, or group for each of its outputs, with levels of its own, besides "
+        "the groups; may be repeated",
     )  # fmt: skip
     add_sensitivities(sub)
     add_solver(sub)

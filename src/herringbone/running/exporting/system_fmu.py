@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from herringbone.analysis.hosted.boundary import is_gearbox
 from herringbone.analysis.hosted.component import make_hosted
 from herringbone.analysis.twin.composite import make_composite
+from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core import Component, ParameterError
 from herringbone.core.declaring.hosting import Wanted
 from herringbone.core.declaring.variable import Causality
@@ -101,6 +102,13 @@ def _exported(
             f"{system}: what a host gives and sees can be chosen of a whole gearbox alone: one "
             "gear pair with bearings and housing, whose two flanges are the ports of the system"
         )
+    inside = structure.without(*outside)
+    kept_out = " ".join(f"--outside {part}" for part in inside.foreign_parts)
+    refuse_foreign_parts(
+        inside,
+        "the system cannot become a single FMU",
+        f"leave it out ({kept_out}), or export an .ssp, which carries it (no --as-fmu)",
+    )
     if wanted is not None and hosted:
         structure = structure.with_values(chosen.values)
         if held:

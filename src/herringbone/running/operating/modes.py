@@ -36,5 +36,9 @@ def modes(
         values=values or {}, gear=gear, housing=housing, start=Start.EQUILIBRIUM, start_offset={}
     )
     found = prepared(system, scene, wishes)
-    refuse_foreign_parts(found.system)
+    refuse_foreign_parts(
+        found.system,
+        "the system's natural modes cannot be computed",
+        "take components in their place, or look at the spectra of a run (herringbone run)",
+    )
     return natural_modes(found.system, found.notes)

@@ -92,6 +92,7 @@ class Evaluator(Protocol):
             all that are neighbours.
         modules: that compute; with all that they import they are part of a point's address.
         has_series: it finds rows over time.
+        columns: outputs (`*`, `?`), or groups of channels, that have figures of their own.
     """
 
     @property
@@ -105,6 +106,11 @@ class Evaluator(Protocol):
 
     @property
     def has_series(self) -> bool:
+        """See above."""
+        raise NotImplementedError
+
+    @property
+    def columns(self) -> tuple[str, ...]:
         """See above."""
         raise NotImplementedError
 

@@ -33,7 +33,7 @@ def levels_over_time(result: Result, columns: Sequence[str]) -> dict[str, Figure
 
     Args:
         result: of a run.
-        columns: further columns or patterns that get figures of their own.
+        columns: further columns, patterns or groups of channels; each has figures of its own.
 
     Raises:
         ParameterError: there is no such column.
@@ -44,7 +44,8 @@ def levels_over_time(result: Result, columns: Sequence[str]) -> dict[str, Figure
         raise ParameterError("too few records for a level; use a longer t_end")
     frequency = run_mesh_frequency(even)
     figures = {"mesh_frequency": Figure(np.nan if frequency is None else frequency, "Hz")}
-    chosen = {name: [name] for name in (even.columns(*columns) if columns else ())}
+    wanted = [pattern for name in columns for pattern in even.channels.get(name, [name])]
+    chosen = {name: [name] for name in (even.columns(*wanted) if wanted else ())}
     groups = _groups(even)
     time = even.data[TIME].to_numpy()[part.rows]
     for name, names in {**groups, **chosen}.items():

@@ -112,7 +112,7 @@ def plan(
         )
     if asking.operating.motion is Motion.TRANSIENT:
         found = prepared(system, scene, own)
-        refuse_foreign_parts(found.system)
+        refuse_foreign_parts(found.system, "no plan can be certified")
         core = Core(found.system)
         questions = questions_of(core, asking.asks)
         rungs, said = transient_rungs(core, questions, asking)
@@ -120,7 +120,7 @@ def plan(
     else:
         at = first_point(asking.operating)
         found = prepared_at(at, system, scene, own)
-        refuse_foreign_parts(found.system)
+        refuse_foreign_parts(found.system, "no plan can be certified")
         solver = SteadySolver(found.system)
         questions = questions_of(solver.structure.core, asking.asks)
         fine = solver.leaner(WHOLE, tolerance_for(questions, 1.0 / FINER))

@@ -22,6 +22,7 @@ from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError, Variable
 from herringbone.core.caching.remembered import Remembered
 from herringbone.core.places.part_path import in_groups
+from herringbone.core.places.wrong_column import meant_columns
 from herringbone.cosim.structure.system import System
 
 _OF_TOLERANCE = 100.0
@@ -151,10 +152,8 @@ class Core:
         wanted = {pattern: system.channels.get(pattern, [pattern]) for pattern in patterns}
         meant = in_groups(system.paths, (*self.names, *others), wanted)
         if missing := [pattern for pattern in patterns if pattern not in meant]:
-            groups = ", ".join(system.channels) or "none"
-            raise StructureError(
-                f"record: no output matches '{missing[0]}'; groups of channels: {groups}"
-            )
+            hint = meant_columns(missing[0], (*self.names, *others), system.channels)
+            raise StructureError(f"record: no output matches '{missing[0]}'; {hint}")
         found = {name for names in meant.values() for name in names}
         return tuple(name for name in self.names if name in found)
 
