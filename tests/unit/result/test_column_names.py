@@ -76,6 +76,8 @@ def test_a_pattern_of_nothing_shows_some_columns(result):
         result.columns("zz*")
     with pytest.raises(ParameterError, match=r"mean gearbox\.gear_mesh\.mesh_left\.force or "):
         result.columns("*.mesh_left.forse")
+    with pytest.raises(ParameterError, match=r"did you mean \S+\.phi"):
+        result.columns("*phy*")  # wildcards are no letters that differ
 
 
 def test_a_table_goes_into_a_folder_that_is_there(result, tmp_path):
