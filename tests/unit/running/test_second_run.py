@@ -8,7 +8,7 @@ from herringbone.analysis.twin.condensed import modes
 from herringbone.analysis.twin.fused import core
 from herringbone.components.resources import flat_csv
 from herringbone.cosim.fmu import unpacked
-from herringbone.running import remembered_answers
+from herringbone.running import coupling_choice, remembered_answers
 from herringbone.running.fused import fused
 from herringbone.running.steps import inner_steps
 
@@ -18,7 +18,7 @@ ONCE = [
     (unpacked, "extract_fmu"),
     (remembered_answers, "loaded_start"),
     (remembered_answers, "fastest_bond"),
-    (remembered_answers, "warn_if_unstable"),
+    (coupling_choice, "warn_if_unstable"),
     (inner_steps, "linear_network"),
     (monolithic, "build_network"),
     (core, "take_apart"),

@@ -34,8 +34,9 @@ _NOTHING = Answers((), np.empty(0), (), np.empty((0, 0)), np.empty(0))
 def speeding_up(system: System, strangers: Strangers) -> System:
     """The system with its own parts as they are when foreign ones are sped up with them.
 
-    As it is where foreign parts are brought to the start, where torques balance without them, or
-    where what they answer to acceleration leaves no mesh closed, which a line tells.
+    As it is where foreign parts are brought to the start, where own ones have no states, where
+    torques balance without foreign ones, or where what these answer to acceleration leaves no mesh
+    closed, which a line tells.
 
     Args:
         system: under load, see `under_load`.
@@ -44,7 +45,7 @@ def speeding_up(system: System, strangers: Strangers) -> System:
     if not strangers or any(part.approach for part in system.parts):
         return system
     own = known_parts(system)
-    if not own.parts:
+    if not own.parts or not Twin(own).state.size:
         return system
     try:
         return system.with_values(_sped_up(system, own, strangers))
