@@ -102,24 +102,25 @@ def _explicit_stepper(
         tolerance: float, degree: int, most: float,
     ) -> int:  # fmt: skip
         """Integrate from t + begin to t + end, inside the macro step, in steps up to `most` [s]."""
-        done, row = begin, 0
+        done, row, follows = begin, 0, tolerance < np.inf
         if w[known] == 0.0:
             set_inputs(b, w, degree, begin / h)
             rhs(b, t + begin, w[:n])
             for i in range(n):
                 w[first + i] = w[i]
             w[known] = 1.0
-        bent(b, w, t + begin, row)
+        if follows:
+            bent(b, w, t + begin, row)
         while done < end:
             left = end - done
             count = max(1.0, math.ceil(left / min(b[following], most) - 1e-9))
             hs = left / count
             runge_kutta(b, w, t + done, hs, degree, done / h, hs / h)
-            error = error_of(b, w, hs) / (share * tolerance)
+            error = error_of(b, w, hs) / (share * tolerance) if follows else 0.0
             ahead = hs * factor(error)
             if error <= 1.0:
                 row = 1 - row
-                bends = tolerance < np.inf and bent(b, w, t + done + hs, row)
+                bends = follows and bent(b, w, t + done + hs, row)
                 if bends and hs > _BENT * math.sqrt(tolerance) * longest_step(b, w):
                     row, error, ahead = 1 - row, np.inf, _NEARER * hs
             if error <= 1.0:
