@@ -35,6 +35,9 @@ class Answers:
     by_acceleration: np.ndarray
 
 
+NO_ANSWERS = Answers((), np.empty(0), (), np.empty((0, 0)), np.empty(0))
+
+
 class Answered:
     """A twin whose inputs follow answers.
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
-from herringbone.analysis.answered import Answered, Answers
+from herringbone.analysis.answered import NO_ANSWERS, Answered, Answers
 from herringbone.analysis.balanced_angle import NoBalanceError, balanced_angles
 from herringbone.analysis.rigid_rotation import (
     names_of_states,
@@ -114,8 +114,7 @@ def even_acceleration(system: System) -> dict[str, float]:
         StructureError: a part is a foreign FMU.
         EquilibriumError: there is none.
     """
-    none = np.empty(0)
-    return answered_equilibrium(Twin(system), Answers((), none, (), np.empty((0, 0)), none)).values
+    return answered_equilibrium(Twin(system), NO_ANSWERS).values
 
 
 def equilibrium(system: System, angles: bool = True) -> Equilibrium:

@@ -13,7 +13,7 @@ from herringbone.analysis.flange.variables import Flange
 from herringbone.core import FmuError
 from herringbone.cosim.signature import Laboratory, Signature
 from herringbone.cosim.signature.rotation import InputRule
-from herringbone.cosim.signature.trial import Refused
+from herringbone.cosim.signature.trial import check_length
 
 Signal = Callable[[np.ndarray], np.ndarray]
 """An angle [rad], or a torque [N m], over time [s] since the start."""
@@ -133,8 +133,7 @@ class Bench:
             Refused: the part refuses a step, or the run would have too many.
             Diverged: its outputs do not stay finite.
         """
-        if steps > self.longest:
-            raise Refused(f"it takes a run of {steps} steps, {self.longest} are allowed")
+        check_length(steps, self.longest)
         h = self.step if h is None else h
         t = h * np.arange(steps + 1)
         start = self.lab.start * self._in

@@ -18,7 +18,7 @@ from herringbone.analysis.flange.answers import TORQUE
 from herringbone.analysis.flange.bench import Bench, Record, Signal
 from herringbone.analysis.flange.motions import burst
 from herringbone.analysis.flange.variables import Flange
-from herringbone.cosim.signature.trial import Refused
+from herringbone.cosim.signature.trial import check_length
 
 PERIODS = (40, 64, 100, 160, 250, 400, 640, 1000, 1600, 2560)
 """Of the oscillations, in steps; close together, as a late control is active in a band only."""
@@ -42,11 +42,8 @@ def kept(longest: int) -> tuple[int, ...]:
 
 def periods(bench: Bench) -> tuple[int, ...]:
     """Those periods that the bench allows; raises Refused if it allows none."""
-    found = kept(bench.longest)
-    if not found:
-        least = CYCLES * PERIODS[0]
-        raise Refused(f"it takes a run of {least} steps, {bench.longest} are allowed")
-    return found
+    check_length(CYCLES * PERIODS[0], bench.longest)
+    return kept(bench.longest)
 
 
 def records(flanges: int) -> int:

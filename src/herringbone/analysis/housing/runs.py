@@ -10,7 +10,7 @@ from herringbone.core.declaring.roles import HALVES
 from herringbone.core.part import Part
 from herringbone.cosim.loops.drive import drive
 from herringbone.cosim.signature.cost import PATIENCE
-from herringbone.cosim.signature.trial import Refused
+from herringbone.cosim.signature.trial import check_length
 
 _AXES = "xyz"
 FORCES = tuple(f"{seat}.f_{axis}" for seat in HALVES for axis in _AXES)
@@ -45,8 +45,7 @@ class Runs:
         self, forces: np.ndarray, names: tuple[str, ...], step: float | None = None
     ) -> np.ndarray:
         """(n + 1, m) outputs under forces (n, 12) [N]; raises Refused if it would be too long."""
-        if self._longest is not None and len(forces) > self._longest:
-            raise Refused(f"it takes a run of {len(forces)} steps, {self._longest} are allowed")
+        check_length(len(forces), self._longest)
         step = step or self.step
         part = self._open()
         try:

@@ -18,7 +18,13 @@ from herringbone.kernels.fmi_calls import DISCARD
 
 
 class Refused(FmuError):
-    """A part refused a trial step, a value or its state."""
+    """A part refused a trial step, a value or its state; or a run would have too many steps."""
+
+
+def check_length(steps: int, longest: int | None) -> None:
+    """Check that a run has no more steps than are allowed, any if None; raises Refused."""
+    if longest is not None and steps > longest:
+        raise Refused(f"it takes a run of {steps} steps, {longest} are allowed")
 
 
 class Trial:

@@ -27,7 +27,7 @@ def under_load(system: System) -> System:
     """
     if not system.foreign_parts or len(system.foreign_parts) == len(system.parts):
         return system
-    if _is_brought(system):
+    if is_brought(system):
         return system
     steady = system.with_values(dict.fromkeys(ramp_times(system), 0.0))
     known = known_parts(steady)
@@ -51,7 +51,7 @@ def turned_back(system: System) -> System:
     For matrices alone: in a run, foreign parts that are brought to the start would stand at angles
     that own shafts have left. As it is where none are brought.
     """
-    if not _is_brought(system):
+    if not is_brought(system):
         return system
     twin = Twin(known_parts(system))
     x = twin.state
@@ -64,6 +64,6 @@ def turned_back(system: System) -> System:
     return system.with_values({names[i]: float(x[i] - time * rates[i]) for i in turning})
 
 
-def _is_brought(system: System) -> bool:
+def is_brought(system: System) -> bool:
     """True if it starts in equilibrium with foreign parts, which are stepped before."""
     return any(part.approach for part in system.parts)

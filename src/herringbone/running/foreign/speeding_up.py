@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from herringbone.analysis.answered import Answers
+from herringbone.analysis.answered import NO_ANSWERS, Answers
 from herringbone.analysis.equilibrium import answered_equilibrium
 from herringbone.analysis.stability.linear_parts import Strangers, linear_network
 from herringbone.analysis.stability.surrogates.inertia import by_acceleration
@@ -20,6 +20,7 @@ from herringbone.core import HerringboneError
 from herringbone.core.activity import tell
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System, Values
+from herringbone.running.foreign.linear_start import is_brought
 from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.running.settling.own_motion import Output, own_motion
 from herringbone.running.start import known_parts
@@ -28,7 +29,6 @@ Variable = tuple[str, str]
 """A part's name and a variable's."""
 _STEADY = 1e-3
 """Acceleration [rad/s^2] that is none."""
-_NOTHING = Answers((), np.empty(0), (), np.empty((0, 0)), np.empty(0))
 
 
 def speeding_up(system: System, strangers: Strangers) -> System:
@@ -42,7 +42,7 @@ def speeding_up(system: System, strangers: Strangers) -> System:
         system: under load, see `under_load`.
         strangers: what stands for its foreign parts.
     """
-    if not strangers or any(part.approach for part in system.parts):
+    if not strangers or is_brought(system):
         return system
     own = known_parts(system)
     if not own.parts or not Twin(own).state.size:
@@ -58,7 +58,7 @@ def _sped_up(system: System, own: System, strangers: Strangers) -> Values:
     """Start values of own parts, none if torques balance; raises HerringboneError, LinAlgError."""
     crossing = _crossing(linear_network(system, strangers=strangers)[0], strangers)
     taken = list(dict.fromkeys(of for of, to in crossing if to[0] in strangers))
-    motion = own_motion(own, _NOTHING, [".".join(of) for of in taken])
+    motion = own_motion(own, NO_ANSWERS, [".".join(of) for of in taken])
     if not abs(motion.acceleration) > _STEADY:
         return {}
     answers = _answers(strangers, crossing, motion.outputs)

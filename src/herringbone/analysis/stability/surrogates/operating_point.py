@@ -13,6 +13,7 @@ from herringbone.analysis.stability.surrogates.stand_in import Stranger
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 
 _FEELABLE = 1e-3
+"""Speeds [rad/s], torques [N m] and slopes below which a line shows 0."""
 _HOLDS = 1e-2
 """Torque that an angle keeps up for good, over what it makes at once: above, it is no shaft's."""
 
