@@ -12,9 +12,7 @@ from herringbone.components.resources import tooth_deviations
 from herringbone.core import Instance
 from herringbone.core.declaring.roles import GEARS, HALVES
 from herringbone.kernels import force_law
-from support.gear_mesh import STATES
-
-INDEX = GEAR_MESH.declaration.index
+from support.gear_mesh import INDEX, MESH_STIFFNESS, STATES
 
 
 def angles(x: np.ndarray, gear: Instance, offset: int = 0) -> np.ndarray:
@@ -199,3 +197,20 @@ def residual(gear: Instance, derivative, x: np.ndarray, step: float, steps: int)
         k4 = rates(x + step * k3)
         x = x + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
     return (stored_energy(gear, x[:STATES]) - start - x[STATES]) / x[STATES + 1]
+
+
+def energy(gear: Instance) -> float:
+    """Energy of an undamped pair with constant table and forces, including their potential [J]."""
+    p = {n: gear[n] for n in INDEX}
+    x = gear.block[:STATES]
+    mass = np.repeat([p["pinion.mass"], p["wheel.mass"]], 2)
+    inertia = np.repeat([p["pinion.inertia"], p["wheel.inertia"]], 2)
+    th, w = angles(x, gear), angles(x, gear, 12)
+    total = 0.5 * (mass @ x[12:16] ** 2 + mass @ x[16:20] ** 2 + inertia @ w**2)
+    for i, name in ((0, "pinion"), (2, "wheel")):
+        for axis, s in (("y", x[0:4]), ("z", x[4:8]), ("t", th)):
+            total += 0.5 * p[f"{name}.shaft_stiffness_{axis}"] * (s[i] - s[i + 1]) ** 2
+    for side in ("left", "right"):
+        total += 0.25 * MESH_STIFFNESS * p[f"mesh_{side}.deflection"] ** 2
+    total -= sum(p[f"{h}.f_{a}"] * p[f"{h}.s_{a}"] for h in HALVES for a in "yz")
+    return total - p["pinion.tau"] * p["pinion.phi"] - p["wheel.tau"] * p["wheel.phi"]

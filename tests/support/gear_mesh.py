@@ -1,13 +1,16 @@
-"""What several tests share: stiffness tables, a loaded gear pair, rigid seats."""
+"""What several tests share: stiffness tables, a gear pair in some state, rigid seats."""
 
+import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.components.ports import HALVES
 from herringbone.core import Instance
+from herringbone.core.places.paths import component_folder
 
 MESH_STIFFNESS = 2.011e9
 """Both halves together [N/m]; physics.md 2.4."""
@@ -15,6 +18,10 @@ RADIAL_STIFFNESS = 6.34e8
 AXIAL_STIFFNESS = 2.03e8
 HALF_MASS = {"pinion": 6.500, "wheel": 47.739}
 STATES = 24
+INDEX = GEAR_MESH.declaration.index
+SHIPPED = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"
+SPEED = 1000 * math.pi / 30
+FORCES = [f"{half}.f_{axis}" for half in HALVES for axis in "yz"]
 
 Rhs = Callable[[np.ndarray], np.ndarray]
 
@@ -146,3 +153,49 @@ def equilibrium(
         if np.abs(step[:-1]).max() < 1e-19:
             break
     return x
+
+
+def set_states(gear: Instance, x: np.ndarray) -> None:
+    gear.block[:STATES] = x
+    gear.component.kernels.out(gear.block, 0.0)
+
+
+def loaded(
+    gear: Instance, torque: float = 200.0, speed: float = 0.0, angle: float = 0.0
+) -> np.ndarray:
+    """Static equilibrium under torque and constant bearing forces; also sets these inputs."""
+    seats = Seats()
+    x = equilibrium(gear, seats, torque, angle)
+    for (name, k, _), i in zip(seats.bonds, [0, 4, 1, 5, 2, 6, 3, 7], strict=True):
+        gear.set(name, -k * x[i])
+    x[INDEX["der(angle)"]] = speed
+    set_states(gear, x)
+    return x
+
+
+def rhs(gear: Instance, x: np.ndarray) -> np.ndarray:
+    dx = np.empty(STATES)
+    gear.block[:STATES] = x
+    gear.component.kernels.rhs(gear.block, 0.0, dx)
+    return dx
+
+
+def random_state(seed: int) -> np.ndarray:
+    """Microns and mm/s around a loaded position; angle and speed of any size."""
+    random = np.random.default_rng(seed)
+    x = 1e-6 * random.standard_normal(STATES)
+    x[INDEX["approach"]] += 4e-6
+    x[12:] *= 1e3
+    x[INDEX["angle"]], x[INDEX["der(angle)"]] = random.uniform(-7, 7), random.uniform(-200, 200)
+    return x
+
+
+def mesh_force(gear: Instance, deflection: float, rate: float = 0.0, angle: float = 0.0) -> float:
+    """Normal force of the left mesh at a deflection [m] and rate [m/s], rolled by the approach."""
+    c = math.cos(gear["base_helix_angle"])
+    x = np.zeros(STATES)
+    x[INDEX["approach"]], x[INDEX["der(approach)"]] = deflection / c, rate / c
+    x[INDEX["angle"]] = angle
+    set_states(gear, x)
+    assert gear["mesh_left.deflection"] == pytest.approx(deflection, rel=1e-14)
+    return gear["mesh_left.force"]

@@ -6,16 +6,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.deviating_teeth import PAIR, mirrored_teeth, write_law, write_teeth
-from support.gear_energy import INDEX, angles, residual
-from support.gear_mesh import STATES, Seats, equilibrium, gear_pair, on_seats, write_errors
+from support.gear_energy import angles, residual
+from support.gear_mesh import (
+    INDEX,
+    SHIPPED,
+    SPEED,
+    STATES,
+    Seats,
+    equilibrium,
+    gear_pair,
+    on_seats,
+    write_errors,
+)
 
 from herringbone.components.resources.stiffness_table import read_stiffness_table
 from herringbone.core import Instance
-from herringbone.core.places.paths import component_folder
 from herringbone.gears.stiffness.slices import SliceMesh
 
-SHIPPED = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"
-SPEED = 1000 * math.pi / 30
 ERRORS = [
     ("left", "drive", "pinion", 27, 0.4e-6, 0.5),
     ("left", "drive", "wheel", 1, 2e-6, 2.0),
