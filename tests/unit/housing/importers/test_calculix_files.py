@@ -1,0 +1,84 @@
+"""Modes of CalculiX, read back to their digits."""
+
+import numpy as np
+import pytest
+from support.fe_files import NODES, SEATS, frd_text, modes_of
+from support.imported_housing import assert_same_receptance, exact_receptance, load, refusal
+
+from herringbone.housing.files.writer import compliance_text
+from herringbone.housing.importers.frd import read_frd
+
+BAD_FRD = [
+    (" 9999", "", "is truncated: the end mark 9999 is missing"),
+    ("    1C", "    9C", "is no CalculiX result file"),
+    (f"{'':37}1", f"{'':37}2", "it is binary; ask for ASCII output"),
+    ("-4  DISP", "-4  TEMP", "it has no modal displacements; ask for *NODE FILE with U"),
+    ("1PGM                1.0", "1PGM                0.0", "mode 1: modal mass 0; the mode has no"),
+    (" -1         2", " -1         x", "is malformed"),
+]
+
+
+@pytest.fixture
+def frd(tmp_path, model):
+    def write(**options):
+        path = tmp_path / "modes.frd"
+        path.write_text(frd_text(*modes_of(model), model[2], **options))
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("short", [False, True])
+def test_frd_to_its_digits(frd, model, short):
+    frequency, shapes = modes_of(model)
+    found = read_frd(frd(short=short))
+    np.testing.assert_allclose(found.frequency, frequency, rtol=5e-7)  # 7 digits of its square
+    np.testing.assert_allclose(found.shapes, shapes, rtol=5.1e-6)  # 6 digits
+    np.testing.assert_allclose(found.coordinates, model[2], rtol=5.1e-6)
+    np.testing.assert_array_equal(found.node, np.arange(1, NODES + 1))
+
+
+def test_frd_becomes_a_housing(frd, seats, model):
+    housing = load(frd(), seats)
+    assert_same_receptance(housing, model, 3e-5)
+    assert housing.kind == ("normal",) * 36
+    expected = model[2][3:6].mean(axis=0) - [100, 0, 0]
+    expected = 1e-3 * np.array([expected[1], -expected[0], expected[2]])
+    np.testing.assert_allclose(housing.points[1].position, expected, rtol=1e-5)
+    assert housing.frame.origin == (0.1, 0.0, 0.0)
+    assert housing.source["tool"] == "CalculiX 2.20"
+
+
+@pytest.mark.parametrize(("old", "new", "expected"), BAD_FRD)
+def test_bad_frd(frd, old, new, expected):
+    path = frd()
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    assert expected in refusal(lambda: read_frd(path))
+
+
+def test_modes_need_seats(frd, seats):
+    assert "Give --seats SEATS.toml" in refusal(lambda: load(frd(), None))
+    seats.write_text(SEATS.replace("valid_to_hz = 500", ""))
+    assert "valid_to_hz is missing" in refusal(lambda: load(frd(), seats))
+    seats.write_text(SEATS.replace("[4, 5, 6]", "[4, 5, 99]"))
+    assert "seat pinion_right: the model has no node 99" in refusal(lambda: load(frd(), seats))
+
+
+def test_static_compliance_completes_few_modes(tmp_path, seats, model):
+    """Eight of 36 modes with the exact statics: pseudo modes carry the rest, positive."""
+    frequency, shapes = modes_of(model)
+    (tmp_path / "few.frd").write_text(frd_text(frequency[:8], shapes[..., :8], model[2]))
+    static = exact_receptance(model, 0.0)
+    (tmp_path / "static.csv").write_text(compliance_text(static))
+    seats.write_text('static = "static.csv"\n' + SEATS)
+    housing = load(tmp_path / "few.frd", seats)
+    assert housing.kind.count("residual") <= 12
+    # Negative parts of a residual that the file's 6 digits leave are cut off.
+    np.testing.assert_allclose(
+        housing.static_compliance(), static, atol=2e-5 * np.abs(static).max()
+    )
+    (tmp_path / "static.csv").write_text(compliance_text(0.1 * static))
+    text = refusal(lambda: load(tmp_path / "few.frd", seats))
+    assert "the modes are softer than the static compliance" in text

@@ -1,0 +1,145 @@
+"""Modes as universal files (55, 2414), read back to their digits."""
+
+import re
+
+import numpy as np
+import pytest
+from support.fe_files import NODES, modes_of, text_2414
+from support.imported_housing import assert_same_receptance, load, refusal
+
+from herringbone.housing.importers.mode_set import real_shape
+from herringbone.housing.importers.seat_file import read_seats
+from herringbone.housing.importers.uff import read_uff
+
+
+@pytest.fixture
+def pyuff():
+    return pytest.importorskip("pyuff", reason="pyuff is in the extra `import`")
+
+
+def node_set(pyuff, coordinates):
+    ones = np.ones(NODES, dtype=int)
+    return pyuff.prepare_2411(
+        np.arange(1, NODES + 1), ones, ones, ones, *coordinates.T, return_full_dict=True
+    )
+
+
+def shape_sets(pyuff, frequency, shapes, *, mass=2.0, zeta=0.03, eta=0.0):
+    for n, f in enumerate(frequency):
+        yield pyuff.prepare_55(
+            id1="NONE", id2="NONE", id3="NONE", id4="NONE", id5="NONE",
+            model_type=1, analysis_type=2, data_ch=2, spec_data_type=8, data_type=2,
+            n_data_per_node=3, load_case=1, mode_n=n + 1, freq=f, modal_m=mass,
+            modal_damp_vis=zeta, modal_damp_his=eta, node_nums=np.arange(1, NODES + 1),
+            r1=shapes[:, 0, n], r2=shapes[:, 1, n], r3=shapes[:, 2, n],
+        )  # fmt: skip
+
+
+def complex_sets(pyuff, frequency, shapes, angle, zeta=0.03):
+    """Shapes turned by `angle` [rad] each, with the modal A of unit modal mass."""
+    turn = np.exp(1j * angle)
+    for n, f in enumerate(frequency):
+        w = 2 * np.pi * f
+        w_d = w * np.sqrt(1 - zeta**2)
+        turned = shapes[:, :, n] * turn
+        yield pyuff.prepare_55(
+            id1="NONE", id2="NONE", id3="NONE", id4="NONE", id5="NONE",
+            model_type=1, analysis_type=3, data_ch=2, spec_data_type=8, data_type=5,
+            n_data_per_node=3, load_case=1, mode_n=n + 1, eig=-zeta * w + 1j * w_d,
+            modal_a=2j * w_d * np.mean(turn) ** 2, modal_b=0j, node_nums=np.arange(1, NODES + 1),
+            r1=turned[:, 0], r2=turned[:, 1], r3=turned[:, 2],
+        )  # fmt: skip
+
+
+@pytest.fixture
+def write_uff(pyuff, tmp_path, model):
+    def write(*sets):
+        path = tmp_path / "modes.unv"
+        pyuff.UFF(str(path)).write_sets([node_set(pyuff, model[2]), *sets], "overwrite")
+        return path
+
+    return write
+
+
+def test_uff_55_to_its_digits(pyuff, write_uff, seats, model):
+    """Shapes of modal mass 2 are scaled to 1; six digits."""
+    frequency, shapes = modes_of(model)
+    path = write_uff(*shape_sets(pyuff, frequency, np.sqrt(2.0) * shapes))
+    found = read_uff(path, read_seats(seats))
+    np.testing.assert_allclose(found.frequency, frequency, rtol=5.1e-6)
+    np.testing.assert_allclose(found.shapes, shapes, rtol=5.1e-6)
+    np.testing.assert_allclose(found.coordinates, model[2], rtol=1e-14)
+    np.testing.assert_array_equal(found.damping_ratio, 0.03)
+    housing = load(path, seats)
+    assert_same_receptance(housing, model, 1e-4)
+    assert housing.damping["source"] == "file"
+
+
+@pytest.mark.parametrize(("zeta", "eta", "expected"), [(0, 0.05, 0.025), (0, 0, 0.02)])
+def test_uff_damping(pyuff, write_uff, seats, model, zeta, eta, expected):
+    """Half the loss factor; without either the seat file's 2 %."""
+    path = write_uff(*shape_sets(pyuff, *modes_of(model), zeta=float(zeta), eta=float(eta)))
+    np.testing.assert_allclose(load(path, seats).damping_ratio, expected, rtol=1e-5)
+
+
+def test_complex_modes_that_are_nearly_real(pyuff, write_uff, seats, model):
+    frequency, shapes = modes_of(model)
+    path = write_uff(*complex_sets(pyuff, frequency, shapes, 0.7))
+    found = read_uff(path, read_seats(seats))
+    np.testing.assert_allclose(np.abs(found.shapes), np.abs(shapes), rtol=2e-5, atol=1e-4)
+    np.testing.assert_allclose(found.frequency, frequency, rtol=1e-5)
+    np.testing.assert_allclose(found.damping_ratio, 0.03, rtol=1e-4)
+
+
+def test_complex_modes_are_refused(pyuff, write_uff, seats, model):
+    """Phases between 0 and 180 degrees from node to node."""
+    frequency, shapes = modes_of(model)
+    angle = np.linspace(0.0, np.pi, NODES)[:, None]
+    path = write_uff(*complex_sets(pyuff, frequency, shapes, angle))
+    text = refusal(lambda: read_uff(path, read_seats(seats)))
+    assert re.search(r"mode 1: the shape is complex, phase collinearity 0\.\d+ < 0.95", text)
+
+
+def test_phase_collinearity_of_a_line_and_a_circle():
+    line = np.exp(0.4j) * np.array([1.0, -2.0, 0.5])
+    shape, factor = real_shape(line, "mode 1")
+    np.testing.assert_allclose(factor * shape, line)
+    circle = np.exp(2j * np.pi * np.arange(8) / 8)
+    assert "collinearity 0.00" in refusal(lambda: real_shape(circle, "mode 1"))
+
+
+def test_uff_2414_to_its_digits(pyuff, write_uff, seats, model):
+    frequency, shapes = modes_of(model)
+    path = write_uff()
+    with path.open("a") as file:
+        file.write("\n".join(text_2414(frequency, shapes)) + "\n")
+    found = read_uff(path, read_seats(seats))
+    np.testing.assert_allclose(found.frequency, frequency, rtol=5.1e-6)
+    np.testing.assert_allclose(found.shapes, shapes, rtol=5.1e-6)
+    np.testing.assert_array_equal(found.damping_ratio, 0.04)
+
+
+def test_bad_uff(pyuff, write_uff, seats, model):
+    frequency, shapes = modes_of(model)
+    given = read_seats(seats)
+
+    def text(path):
+        return refusal(lambda: read_uff(path, given))
+
+    unscaled = write_uff(*shape_sets(pyuff, frequency, shapes, mass=0.0))
+    assert "mode 1: modal mass 0; the mode has no scale" in text(unscaled)
+    path = write_uff(*shape_sets(pyuff, frequency, shapes))
+    whole = path.read_text()
+    path.write_text(whole[: len(whole) - 300])
+    assert "is truncated: the last data set does not end" in text(path)
+    path.write_text(whole.replace("    -1", "    -2"))
+    assert "is no universal file" in text(path)
+    path.write_text("\n".join(whole.splitlines()[2 * NODES + 3 :]))
+    assert "no data set 15 or 2411 holds nodes" in text(path)
+    assert "no data set 55 or 2414 holds normal modes" in text(write_uff())
+    units = pyuff.prepare_164(
+        units_code=1, units_description="SI", temp_mode=1, length=1.0, force=1.0, temp=1.0,
+        temp_offset=273.15,
+    )  # fmt: skip
+    expected = "says that a unit of length is 1 m and of mass 1 kg; "
+    assert expected in text(write_uff(units, *shape_sets(pyuff, frequency, shapes)))
