@@ -1,0 +1,99 @@
+"""Systems in systems in SSP files: written, wired alike, read again."""
+
+import zipfile
+from dataclasses import replace
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from fmpy.ssp import ssd as fmpy_ssp
+from lxml import etree
+from support.described_fmus import SSD
+
+from herringbone.core import StructureError
+from herringbone.cosim.ssp.read import read_ssp
+from herringbone.cosim.ssp.write import write_ssp
+from herringbone.cosim.structure.system import PartSpec
+
+
+def nested(system):
+    """The system in another one, with a part beside it that acts on it from outside."""
+    inner = system.nested_as("box")
+    return replace(
+        inner,
+        parts=(
+            *inner.parts,
+            PartSpec("far.away", component="element"),
+            PartSpec("z", component="body"),
+        ),
+        connections=(
+            *inner.connections,
+            ("box.right.port.s", "far.away.s"),
+            ("far.away.force", "box.right.f"),
+        ),
+        ports={"left": "box.left.port"},
+    )
+
+
+def corners(element):
+    return [float(element.get(key)) for key in ("x1", "y1", "x2", "y2")]
+
+
+def test_nested_systems_stay_so_and_are_wired_alike(system, fmus, tmp_path):
+    """Followed through the borders, connections are those of the flat file; nothing overlaps."""
+    whole, file = nested(system), tmp_path / "nested.ssp"
+    write_ssp(whole, fmus, file, step=1e-5, t_end=0.25, nested=True)
+    schema = Path(fmpy_ssp.__file__).parent / "schema" / "SystemStructureDescription.xsd"
+    with zipfile.ZipFile(file) as archive:
+        root = etree.fromstring(archive.read(SSD))
+    etree.XMLSchema(etree.parse(schema)).assertValid(root)
+    top = root.find("{*}System")
+    assert [e.get("name") for e in top.find("{*}Elements")] == ["z", "box", "far"]
+    names = {c.get("name"): c.get("kind") for c in top.find("{*}Connectors")}
+    assert names == {"left.s": "output"}
+    came = {}
+    for box in root.iter("{*}System"):
+        path = "" if box is top else f"{box.get('name')}."
+        for c in box.iterfind("{*}Connections/{*}Connection"):
+            start, end = (
+                f"{path}{c.get(f'{side}Element')}" if c.get(f"{side}Element") else path[:-1]
+                for side in ("start", "end")
+            )
+            came[end, c.get("endConnector")] = start, c.get("startConnector")
+        places = [corners(e.find("{*}ElementGeometry")) for e in box.find("{*}Elements")]
+        assert box.find("{*}SystemGeometry") is None  # OMSimulator 3.0 refuses the file for it
+        assert all(0.0 < a < c and 0.0 < b < d for a, b, c, d in places)
+        for one, other in combinations(places, 2):
+            assert (
+                one[0] >= other[2] or other[0] >= one[2] or one[1] >= other[3] or other[1] >= one[3]
+            )
+
+    def source(end):
+        start = came[end]
+        return source(start) if start in came else start
+
+    for start, end in whole.connections:
+        (part, output), (target, into) = whole.split(start), whole.split(end)
+        assert source((target, into)) == (part, output)
+
+
+def test_nested_systems_are_read_again(system, fmus, tmp_path):
+    """Paths, values and connections; a connector that nothing arrives at is refused."""
+    whole, file = nested(system), tmp_path / "nested.ssp"
+    write_ssp(whole, fmus, file, step=1e-5, t_end=0.25, nested=True)
+    found = read_ssp(file)
+    assert found.ports == whole.ports
+    assert not found.notes
+    assert sorted(found.paths) == sorted(whole.paths)
+    assert set(found.connections) == set(whole.connections)
+    for part in whole.parts:
+        assert found.part(part.name).values == part.values
+    folder = tmp_path / "unpacked"
+    with zipfile.ZipFile(file) as archive:
+        archive.extractall(folder)
+    text = (folder / SSD).read_text(encoding="utf-8")
+    cut = text.replace('endConnector="right__f"', 'endConnector="other"')
+    assert cut != text
+    (folder / SSD).write_text(cut, encoding="utf-8")
+    with pytest.raises(StructureError, match=r"'box__right.f': no output of a component arrives"):
+        read_ssp(folder)
