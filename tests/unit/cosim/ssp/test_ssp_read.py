@@ -1,7 +1,6 @@
 """SSP 1.0 files that are read: whose values win, and what is refused by name."""
 
 import zipfile
-from dataclasses import replace
 
 import pytest
 from support.described_fmus import ELEMENT, SSD, make_fmu
@@ -186,22 +185,3 @@ def test_units_with_two_meanings_are_refused(fmus, tmp_path):
     system = System("two", "", (PartSpec("first", "element"), PartSpec("second", "other")), ())
     with pytest.raises(StructureError, match=r"second\.force: unit 'N' is defined otherwise"):
         write_ssp(system, fmus, tmp_path / "x.ssp", step=1e-5, t_end=1.0)
-
-
-def nested(system):
-    """The system in another one, with a part beside it that acts on it from outside."""
-    inner = system.nested_as("box")
-    return replace(
-        inner,
-        parts=(
-            *inner.parts,
-            PartSpec("far.away", component="element"),
-            PartSpec("z", component="body"),
-        ),
-        connections=(
-            *inner.connections,
-            ("box.right.port.s", "far.away.s"),
-            ("far.away.force", "box.right.f"),
-        ),
-        ports={"left": "box.left.port"},
-    )
