@@ -8,7 +8,7 @@ what does not fall with the length passes directly.
 import numpy as np
 
 from herringbone.cosim.signature.amplitudes import unlike
-from herringbone.cosim.signature.feedthrough import ROUNDING
+from herringbone.cosim.signature.feedthrough.at_start import ROUNDING
 from herringbone.cosim.signature.laboratory import Laboratory
 
 _LEAD = 8

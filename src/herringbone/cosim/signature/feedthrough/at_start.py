@@ -3,8 +3,8 @@
 import numpy as np
 
 from herringbone.cosim.signature.amplitudes import RATIO
+from herringbone.cosim.signature.feedthrough.response import HALVINGS, Response, extrapolated
 from herringbone.cosim.signature.laboratory import Laboratory
-from herringbone.cosim.signature.response import HALVINGS, Response, extrapolated
 from herringbone.cosim.signature.signature import Findings
 from herringbone.cosim.signature.trial import Refused
 
