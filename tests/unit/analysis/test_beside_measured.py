@@ -6,7 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from herringbone.analysis.figures.velocity_sensor import VelocitySensor
+from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.analysis.measured.beside import Predicted, beside
 from herringbone.analysis.measured.record import MeasuredRecord
 from herringbone.core import ParameterError

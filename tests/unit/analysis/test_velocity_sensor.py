@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from herringbone.analysis.figures.velocity_sensor import VelocitySensor
+from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.core import ParameterError
 
 STEP = 2e-5
