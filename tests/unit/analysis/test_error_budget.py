@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from support.gear_mesh import write_table
+from support.gearing.gear_mesh import write_table
 from support.result import make_result
 
 import herringbone as hb

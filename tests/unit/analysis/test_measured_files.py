@@ -5,7 +5,7 @@ import struct
 import numpy as np
 import pytest
 from scipy.io import wavfile
-from support.universal_file import write_universal
+from support.files.universal_file import write_universal
 
 from herringbone.analysis.measured.record import read_measured
 from herringbone.core import HerringboneError

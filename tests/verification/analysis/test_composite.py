@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 import pytest
-from support.rig_as_one import rig_as_one
+from support.rig.as_one import rig_as_one
 
 from herringbone.analysis.twin.composite import Composite, make_composite
 from herringbone.analysis.twin.monolithic import Twin

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from campaigns.condensed_steps import Box
 from fuzz.campaign import last_commit
-from support.rig_as_one import rig_as_one
+from support.rig.as_one import rig_as_one
 
 from herringbone.analysis.twin.block_core.steps import TOLERANCE
 from herringbone.analysis.twin.composite import MICRO_STEP, make_composite

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from support.rig_limits import predicted, rig
+from support.rig.limits import predicted, rig
 
 from herringbone.analysis.stability.instability import warn_if_unstable
 from herringbone.analysis.stability.limits import default_algorithms

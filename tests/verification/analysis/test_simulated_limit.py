@@ -7,7 +7,7 @@ unstable near the limit of its linear parts.
 
 import numpy as np
 import pytest
-from support.rig_limits import predicted, rig
+from support.rig.limits import predicted, rig
 
 from herringbone.analysis.accuracy.step_ladder import charted_algorithms
 from herringbone.analysis.stability import atlas

@@ -2,8 +2,8 @@
 
 import json
 
-from support.kinds import build_kinds
-from support.strangers import write_system
+from support.foreign.kinds import build_kinds
+from support.foreign.strangers import write_system
 
 from herringbone.commands import main as cli
 

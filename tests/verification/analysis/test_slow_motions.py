@@ -7,7 +7,7 @@ them then must not be taken for growth. Values are drawn from a commit's hash.
 import numpy as np
 import pytest
 from pythonfmu.builder import FmuBuilder
-from support.kinds import KINDS
+from support.foreign.kinds import KINDS
 
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.growth import GROWTH

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from support.own_pair import write_pair
+from support.gearing.own_pair import write_pair
 from threadpoolctl import threadpool_limits
 
 import herringbone as hb

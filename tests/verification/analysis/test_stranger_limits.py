@@ -9,9 +9,9 @@ import math
 
 import numpy as np
 import pytest
-from support.c_housing import c_housing_fmu
-from support.kinds import without_states
-from support.stranger_limits import ABOVE, BELOW, limits, run_rate
+from support.foreign.c_housing import c_housing_fmu
+from support.foreign.kinds import without_states
+from support.foreign.stranger_limits import ABOVE, BELOW, limits, run_rate
 
 import herringbone as hb
 from herringbone.analysis.stability.amplification import Amplification

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import integrate
 from scipy.linalg import expm
-from support.gear_mesh import constant_table
+from support.gearing.gear_mesh import constant_table
 
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.equilibrium import equilibrium

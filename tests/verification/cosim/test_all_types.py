@@ -12,7 +12,7 @@ import fmpy
 import numpy as np
 import pandas as pd
 import pytest
-from support.all_types import EVENTS, KINDS, build_all_types
+from support.foreign.all_types import EVENTS, KINDS, build_all_types
 
 import herringbone as hb
 from herringbone.commands.main import main

@@ -4,8 +4,8 @@ import sys
 
 import numpy as np
 import pytest
-from support.all_types import EVENTS, KINDS, build_all_types
-from support.oscillator import Oscillator
+from support.foreign.all_types import EVENTS, KINDS, build_all_types
+from support.foreign.oscillator import Oscillator
 
 import herringbone as hb
 from herringbone.cosim.structure.system import PartSpec, System

@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 import pytest
-from support.c_housing import c_housing_fmu
-from support.drivetrain import EVENTS, VALUES, WITHIN, drivetrain, error, exact, turned
+from support.foreign.c_housing import c_housing_fmu
+from support.foreign.drivetrain import EVENTS, VALUES, WITHIN, drivetrain, error, exact, turned
 
 import herringbone as hb
 

@@ -6,7 +6,7 @@
 import tomllib
 
 import pytest
-from support.kinds import KINDS
+from support.foreign.kinds import KINDS
 
 from herringbone.commands.main import main
 from herringbone.cosim.cell.policy import foreign_fmu_policy

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from support.kinds import without_states
-from support.oscillator import JOINED, Oscillator
-from support.strangers import write_system
+from support.foreign.kinds import without_states
+from support.foreign.oscillator import JOINED, Oscillator
+from support.foreign.strangers import write_system
 
 import herringbone as hb
 

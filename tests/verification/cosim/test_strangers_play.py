@@ -6,7 +6,7 @@ Two masses, a spring of 4e4 N/m between them beyond 5 mm of play; contact after 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from support.strangers import write_system
+from support.foreign.strangers import write_system
 
 import herringbone as hb
 

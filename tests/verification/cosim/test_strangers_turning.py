@@ -8,8 +8,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from support.strangers import write_system
-from support.turning import Gearbox, changed
+from support.foreign.strangers import write_system
+from support.foreign.turning import Gearbox, changed
 
 import herringbone as hb
 

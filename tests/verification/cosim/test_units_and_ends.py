@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.c_fmu import compiled_fmu
+from support.foreign.c_fmu import compiled_fmu
 
 import herringbone as hb
 from herringbone.core import HerringboneError, OutcomeKind

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.gear_mesh import write_errors
+from support.gearing.gear_mesh import write_errors
 
 import herringbone as hb
 

@@ -6,9 +6,9 @@ it. All else falls with the third power at least.
 """
 
 import pytest
-from support.kinds import build_kinds
-from support.strangers import write_system
-from support.turning import TORQUE, Gearbox, changed
+from support.foreign.kinds import build_kinds
+from support.foreign.strangers import write_system
+from support.foreign.turning import TORQUE, Gearbox, changed
 
 import herringbone as hb
 from herringbone.analysis.accuracy.apart import apart

@@ -5,7 +5,7 @@ leaves: 1e-6 and less.
 """
 
 import pytest
-from support.c_housing import c_housing_fmu
+from support.foreign.c_housing import c_housing_fmu
 
 import herringbone as hb
 from herringbone.analysis.accuracy.apart import apart

@@ -4,8 +4,8 @@ from functools import partial
 
 import numpy as np
 import pytest
-from support.c_flange import c_flange
-from support.c_housing import c_housing_fmu
+from support.foreign.c_flange import c_flange
+from support.foreign.c_housing import c_housing_fmu
 
 import herringbone as hb
 from herringbone.analysis.accuracy.apart import apart

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.own_pair import write_pair
+from support.gearing.own_pair import write_pair
 
 import herringbone as hb
 from herringbone.core import ParameterError

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.kinds import build_kinds
-from support.strangers import write_system
+from support.foreign.kinds import build_kinds
+from support.foreign.strangers import write_system
 
 import herringbone as hb
 from herringbone.analysis.asked import shaft_torques

@@ -1,8 +1,8 @@
 """FMUs that can be instantiated once per process: each run has a child process for them."""
 
 import pytest
-from support.kinds import build_kinds
-from support.strangers import write_system
+from support.foreign.kinds import build_kinds
+from support.foreign.strangers import write_system
 
 import herringbone as hb
 from herringbone.analysis.accuracy.apart import apart

@@ -3,8 +3,8 @@
 import math
 
 import pytest
+from support.gearing.own_pair import write_pair
 from support.housing import small_housing
-from support.own_pair import write_pair
 
 import herringbone as hb
 from herringbone.core import ParameterError

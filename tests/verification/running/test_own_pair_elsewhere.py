@@ -5,7 +5,7 @@ import math
 import fmpy
 import pytest
 from support.compiler import needs_compiler
-from support.own_pair import write_pair
+from support.gearing.own_pair import write_pair
 
 import herringbone as hb
 from herringbone.commands.main import main

@@ -6,9 +6,9 @@ import sys
 import numpy as np
 import pytest
 from support.cut_off import found_in, killed, ran, taken_up, write_often
-from support.kinds import KINDS
-from support.reel import python_reel, reels
-from support.strangers import write_system
+from support.foreign.kinds import KINDS
+from support.foreign.reel import python_reel, reels
+from support.foreign.strangers import write_system
 
 import herringbone as hb
 from herringbone.commands.main import main

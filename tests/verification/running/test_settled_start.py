@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from support.c_housing import c_housing_fmu
-from support.kinds import build_kinds
-from support.strangers import write_system
+from support.foreign.c_housing import c_housing_fmu
+from support.foreign.kinds import build_kinds
+from support.foreign.strangers import write_system
 
 import herringbone as hb
 from herringbone.analysis.rigid_rotation import names_of_states

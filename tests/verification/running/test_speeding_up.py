@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.kinds import build_kinds
+from support.foreign.kinds import build_kinds
 
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.linear_parts import linear_network

@@ -1,13 +1,13 @@
 """A tolerance with foreign parts: the whole run errs at most twice of it, and not too little.
 
-The oscillator's solution is exact, see `support.oscillator`. The error of the search is estimated
-by runs with longer steps, with the power 2 at the most; higher powers make the run finer than asked
-for.
+The oscillator's solution is exact, see `support.foreign.oscillator`. The error of the search is
+estimated by runs with longer steps, with the power 2 at the most; higher powers make the run finer
+than asked for.
 """
 
 import pytest
-from support.oscillator import JOINED, Oscillator
-from support.strangers import write_system
+from support.foreign.oscillator import JOINED, Oscillator
+from support.foreign.strangers import write_system
 
 import herringbone as hb
 from herringbone.commands import main as cli

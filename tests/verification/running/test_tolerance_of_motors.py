@@ -6,8 +6,8 @@ FMUs with short steps: 1e-7 and less, by the rule (`stability.recommendation.sep
 """
 
 import pytest
-from support.kinds import build_kinds
-from support.turning import with_motors
+from support.foreign.kinds import build_kinds
+from support.foreign.turning import with_motors
 
 import herringbone as hb
 from herringbone.analysis.accuracy.apart import apart

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from support.c_housing import DOFS, c_housing_fmu
+from support.foreign.c_housing import DOFS, c_housing_fmu
 
 import herringbone as hb
 from herringbone.commands import main as cli

@@ -4,9 +4,9 @@ from itertools import product
 from pathlib import Path
 
 from herringbone.core.declaring.roles import HALVES
-from support.fmi3_description import c_part
+from support.foreign.fmi3_description import c_part
 
-SOURCE = Path(__file__).parents[1] / "fmus" / "c_housing.c"
+SOURCE = Path(__file__).parents[2] / "fmus" / "c_housing.c"
 DOFS = list(product(HALVES, "xyz"))
 
 

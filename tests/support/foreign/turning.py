@@ -10,7 +10,7 @@ from pathlib import Path
 
 import herringbone as hb
 from herringbone.running.prepared import Wishes, prepared
-from support.strangers import write_system
+from support.foreign.strangers import write_system
 
 TORQUE = 200.0
 """At the pinion [N m]."""

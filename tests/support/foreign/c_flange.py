@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from support.fmi3_description import c_part
+from support.foreign.fmi3_description import c_part
 
-SOURCE = Path(__file__).parents[1] / "fmus" / "c_flange.c"
+SOURCE = Path(__file__).parents[2] / "fmus" / "c_flange.c"
 _UNITS = {"tau": "N.m", "drive": "N.m", "phi": "rad", "w": "rad/s"}
 _COUPLED = {0: "a.phi", 1: "a.w", 2: "b.phi", 3: "b.w"}, {4: "a.tau", 5: "b.tau"}
 _SHAFT = {0: "flange.phi", 1: "flange.w", 2: "drive"}, {4: "flange.tau"}

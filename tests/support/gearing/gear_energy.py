@@ -12,7 +12,7 @@ from herringbone.components.resources import tooth_deviations
 from herringbone.core import Instance
 from herringbone.core.declaring.roles import GEARS, HALVES
 from herringbone.kernels import force_law
-from support.gear_mesh import INDEX, MESH_STIFFNESS, STATES
+from support.gearing.gear_mesh import INDEX, MESH_STIFFNESS, STATES
 
 
 def angles(x: np.ndarray, gear: Instance, offset: int = 0) -> np.ndarray:

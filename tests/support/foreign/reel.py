@@ -8,10 +8,10 @@ import sys
 import zipfile
 from pathlib import Path
 
-from support.c_fmu import compiled_fmu
-from support.strangers import write_system
+from support.foreign.c_fmu import compiled_fmu
+from support.foreign.strangers import write_system
 
-FMUS = Path(__file__).parents[1] / "fmus"
+FMUS = Path(__file__).parents[2] / "fmus"
 ABILITIES = ' canGetAndSetFMUstate="true" canSerializeFMUstate="true"'
 JOINED = [
     ["left.s", "spring.x1"], ["left.v", "spring.v1"], ["spring.f1", "left.f"],

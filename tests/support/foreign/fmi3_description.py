@@ -3,7 +3,7 @@
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-from support.c_fmu import compiled_fmu
+from support.foreign.c_fmu import compiled_fmu
 
 _NAMES = {"canGetAndSetFMUstate": "canGetAndSetFMUState"}
 

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from support.c_fmu import compiled_fmu
+from support.foreign.c_fmu import compiled_fmu
 
-SOURCE = Path(__file__).parents[1] / "fmus" / "all_types.c"
+SOURCE = Path(__file__).parents[2] / "fmus" / "all_types.c"
 KINDS = (
     "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Boolean", "String",
     "Binary", "Enumeration", "Float32",

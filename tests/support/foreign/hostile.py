@@ -3,9 +3,9 @@
 from enum import IntEnum
 from pathlib import Path
 
-from support.c_fmu import compiled_fmu
+from support.foreign.c_fmu import compiled_fmu
 
-SOURCE = Path(__file__).parents[1] / "fmus" / "hostile.c"
+SOURCE = Path(__file__).parents[2] / "fmus" / "hostile.c"
 _TWO = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="hostile" guid="h" numberOfEventIndicators="0">
 <CoSimulation modelIdentifier="hostile" canHandleVariableCommunicationStepSize="true"/>

@@ -5,7 +5,7 @@ import sys
 import zipfile
 from pathlib import Path
 
-KINDS = Path(__file__).parents[1] / "fmus" / "kinds"
+KINDS = Path(__file__).parents[2] / "fmus" / "kinds"
 
 
 def build_kinds(folder: Path, *sources: str) -> Path:

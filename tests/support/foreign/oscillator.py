@@ -9,8 +9,8 @@ import numpy as np
 from scipy.linalg import expm
 
 import herringbone as hb
-from support.kinds import without_states
-from support.strangers import write_system
+from support.foreign.kinds import without_states
+from support.foreign.strangers import write_system
 
 JOINED = {
     "force and motion": [["one.fo", "two.f"], ["two.x", "one.xo"], ["two.v", "one.vo"]],

@@ -6,11 +6,11 @@ import numpy as np
 from scipy.linalg import expm
 
 import herringbone as hb
-from support.c_fmu import compiled_fmu
-from support.fmi3_description import as_fmi3
-from support.strangers import write_system
+from support.foreign.c_fmu import compiled_fmu
+from support.foreign.fmi3_description import as_fmi3
+from support.foreign.strangers import write_system
 
-SOURCE = Path(__file__).parents[1] / "fmus" / "drivetrain.c"
+SOURCE = Path(__file__).parents[2] / "fmus" / "drivetrain.c"
 EVENTS = 'hasEventMode="true" mightReturnEarlyFromDoStep="true"'
 WITHIN = 'providesIntermediateUpdate="true"'
 JOINED = [

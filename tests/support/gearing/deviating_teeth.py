@@ -12,7 +12,7 @@ from herringbone.gears.files.pair_law_file import pair_law_text, tooth_deviation
 from herringbone.gears.stiffness.pair_law import pair_law
 from herringbone.gears.stiffness.point_mesh import PointMesh
 from herringbone.gears.stiffness.slices import SliceMesh
-from support.gears import THESIS
+from support.gearing.gears import THESIS
 
 PAIR = GearPair(**THESIS)
 UNIT = 1e-5
