@@ -14,7 +14,7 @@ from herringbone.analysis.stability.recommendation import (
     rank,
 )
 
-PICTURES = Path(__file__).parents[3] / "examples" / "pictures"
+PICTURES = Path(__file__).parents[4] / "examples" / "pictures"
 FREQUENCY = 2.0 * np.pi * 2278.0
 """All bonds of the rig together [rad/s]: `herringbone stability test_rig`."""
 

@@ -20,7 +20,7 @@ from herringbone.core import HerringboneError, OutcomeKind
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import read_system
 
-SELECTOR = Path(__file__).parents[2] / "fmus" / "selector.py"
+SELECTOR = Path(__file__).parents[3] / "fmus" / "selector.py"
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="written for POSIX")
 
 LARGE = {

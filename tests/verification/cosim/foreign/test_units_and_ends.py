@@ -14,7 +14,7 @@ from support.foreign.c_fmu import compiled_fmu
 import herringbone as hb
 from herringbone.core import HerringboneError, OutcomeKind
 
-SOURCE = Path(__file__).parents[2] / "fmus" / "turning_mass.c"
+SOURCE = Path(__file__).parents[3] / "fmus" / "turning_mass.c"
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="written for POSIX")
 
 TURN = {"rad": (1.0, 'rad="1"'), "deg": (math.pi / 180.0, 'rad="1"')}
