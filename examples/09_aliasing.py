@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 import herringbone as hb
+from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor, sensor_velocity
 from herringbone.analysis.figures.spectra import amplitude_spectrum
-from herringbone.analysis.figures.velocity_sensor import VelocitySensor, sensor_velocity
 
 SPEED, TORQUE, TEETH = 1500.0, 200.0, 27
 CYCLE = f"# units: time s, speed r/min, torque N.m\ntime,speed,torque\n0,{SPEED:g},{TORQUE:g}\n"

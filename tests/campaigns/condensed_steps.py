@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from fuzz.campaign import last_commit
-from support.own_pair import write_pair
+from support.gearing.own_pair import write_pair
 
 from campaigns.plans import tell
 from herringbone.analysis.accuracy.apart import differences

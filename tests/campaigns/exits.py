@@ -15,7 +15,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from support.reel import python_reel
+from support.foreign.reel import python_reel
 
 _SECONDS, _OFTEN = 300, 50
 SCRIPT = """

@@ -19,7 +19,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from support.c_fmu import compiler
+from support.foreign.c_fmu import compiler
 
 import herringbone as hb
 from herringbone import plotting

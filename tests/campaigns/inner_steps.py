@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from support.gear_mesh import STATES, Seats, equilibrium
-from support.own_pair import write_pair
+from support.gearing.gear_mesh import STATES, Seats, equilibrium
+from support.gearing.own_pair import write_pair
 
 import herringbone as hb
 from campaigns.plans import tell

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from support.reel import python_reel, reels
-from support.strangers import write_system
+from support.foreign.reel import python_reel, reels
+from support.foreign.strangers import write_system
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import argparse
 import math
 from collections.abc import Mapping
 
-from support.stranger_limits import limits
+from support.foreign.stranger_limits import limits
 
 from campaigns.plans import tell
 from herringbone.analysis.stability.amplification import Amplification

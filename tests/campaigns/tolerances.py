@@ -23,10 +23,10 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from fuzz.campaign import last_commit
-from support.c_housing import c_housing_fmu
-from support.kinds import build_kinds
-from support.oscillator import JOINED, Oscillator
-from support.turning import with_motors
+from support.foreign.c_housing import c_housing_fmu
+from support.foreign.kinds import build_kinds
+from support.foreign.oscillator import JOINED, Oscillator
+from support.foreign.turning import with_motors
 
 import herringbone as hb
 from campaigns.plans import tell

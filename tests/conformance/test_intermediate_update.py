@@ -5,7 +5,7 @@ import math
 import fmpy
 import pytest
 from fmpy.fmi1 import FMICallException
-from support.fmi3_host import Fmi3Host
+from support.hosts.fmi3 import Fmi3Host
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core.declaring.variable import NODES

@@ -8,7 +8,7 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
-from support.exchange import ExchangeHost
+from support.hosts.exchange import ExchangeHost
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.components.resources.modal_data import read_mode_table

@@ -6,8 +6,8 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
-from support.fmi3_host import Fmi3Host
 from support.fmus import NAMES, H, outputs
+from support.hosts.fmi3 import Fmi3Host
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from support.deviating_teeth import PAIR, write_law, write_teeth
 from support.fmus import H, outputs
+from support.gearing.deviating_teeth import PAIR, write_law, write_teeth
 
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.core import Instance

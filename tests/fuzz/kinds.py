@@ -13,7 +13,7 @@ import fmpy
 import numpy as np
 import scipy.io
 import scipy.sparse as sp
-from support.fe_files import (
+from support.files.fe_files import (
     NODES,
     SEATS,
     dmig_text,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.c_housing import c_housing_fmu
+from support.foreign.c_housing import c_housing_fmu
 from support.housing import seat_points
 
 import herringbone as hb

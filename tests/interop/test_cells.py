@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.hostile import ENDS, SEEN, Deed, Place, hostile_fmu
+from support.foreign.hostile import ENDS, SEEN, Deed, Place, hostile_fmu
 
 import herringbone as hb
 from herringbone.commands.main import main

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from support.hostile import Deed, Place, hostile_fmu
+from support.foreign.hostile import Deed, Place, hostile_fmu
 
 from herringbone.core.places.paths import cache_root
 

@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 import pytest
-from support.gear_mesh import constant_table, gear_pair
+from support.gearing.gear_mesh import constant_table, gear_pair
 
 ZETA, RATIO = 0.03, 0.15
 STIFFNESS, MEAN = 1e9, 2e-6

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from support.gears import THESIS, gear_pair
+from support.gearing.gears import THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.gears import GearPair

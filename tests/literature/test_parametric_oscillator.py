@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 import pytest
-from support.gear_mesh import gear_pair, write_table
+from support.gearing.gear_mesh import gear_pair, write_table
 
 from herringbone.core import Instance
 

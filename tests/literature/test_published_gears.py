@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from support.gears import HELICAL, SPUR, THESIS, gear_pair
+from support.gearing.gears import HELICAL, SPUR, THESIS, gear_pair
 
 
 def test_thesis_pair_follows_from_its_data():

@@ -17,7 +17,7 @@ import subprocess
 import numpy as np
 import pytest
 from support.clearance import contact_lost, fold
-from support.gear_mesh import constant_table
+from support.gearing.gear_mesh import constant_table
 
 import herringbone as hb
 from herringbone.analysis.steady.marching.marched import Held, start_of

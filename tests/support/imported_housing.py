@@ -9,7 +9,7 @@ import pytest
 from herringbone.components.ports import HALVES
 from herringbone.core import HerringboneError
 from herringbone.housing.importers import import_housing
-from support.fe_files import NODES
+from support.files.fe_files import NODES
 
 BAND = 500.0
 

@@ -1,7 +1,7 @@
 """Fixtures of the verification tests."""
 
 import pytest
-from support.kinds import build_kinds
+from support.foreign.kinds import build_kinds
 
 
 @pytest.fixture(scope="session")

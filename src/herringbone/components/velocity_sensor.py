@@ -18,8 +18,9 @@ samples were clipped. A line at f > sampling_hz / 2 shows at |f - n sampling_hz|
 
 One sensor feels one direction at one place: connect `velocity` to a velocity of the housing, such
 as `pinion_left.v_z`; take one instance per sensor. Points of the boss face between the seats'
-degrees of freedom are no variables of the housing; `herringbone.analysis.figures.velocity_sensor`
-computes them from the modal data afterwards, with the same parameters.
+degrees of freedom are no variables of the housing;
+`herringbone.analysis.figures.sensing.velocity_sensor` computes them from the modal data afterwards,
+with the same parameters.
 
 Samples exist in time steps only: the native FMU offers no model exchange, and the monolithic
 solution keeps the held value.

@@ -20,7 +20,7 @@ from herringbone.running.fused.fused import (
     check_kind,
     check_record,
 )
-from herringbone.running.housing_check import HousingRemarks, with_remarks
+from herringbone.running.housings.fmu_remarks import HousingRemarks, with_remarks
 from herringbone.running.operating.by_hand import said_by_hand
 from herringbone.running.operating.commanded import operated
 from herringbone.running.operating.lean import certified_row, lean_notes

@@ -25,7 +25,7 @@ from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.exporting.ssp_import import load_ssp, ssp_scene
-from herringbone.running.housing_check import (
+from herringbone.running.housings.fmu_remarks import (
     HousingRemarks,
     refuse_other_kinds,
     replacement_remarks,

@@ -12,14 +12,14 @@ from herringbone.core.declaring.roles import Role
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.running.chosen_parts import part_for
-from herringbone.running.housing_check import HousingRemarks
-from herringbone.running.housings import split_housings, with_housing_data
+from herringbone.running.housings.fmu_remarks import HousingRemarks
+from herringbone.running.housings.given import split_housings, with_housing_data
+from herringbone.running.housings.rigid_ground import driven_one_way
 from herringbone.running.loading import load_scene, load_system, with_options, with_replacements
 from herringbone.running.operating.lean import refuse_lean
 from herringbone.running.pairs.gears import Gear, with_gears
 from herringbone.running.pairs.impacts import with_impacts
 from herringbone.running.pairs.open_flanges import balanced, unbalanced
-from herringbone.running.rigid_ground import driven_one_way
 from herringbone.running.start import started
 from herringbone.scenes import Scene
 

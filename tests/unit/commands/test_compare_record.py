@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from scipy.io import wavfile
-from support.universal_file import write_universal
+from support.files.universal_file import write_universal
 
 import herringbone as hb
 from herringbone.analysis.figures.sensing.sensors import sensor_figures

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.deviating_teeth import PAIR, write_law, write_teeth
+from support.gearing.deviating_teeth import PAIR, write_law, write_teeth
 
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh.harmonics import keep_harmonics

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from support.deviating_teeth import PAIR, UNIT, write_law, write_teeth
-from support.gear_mesh import STATES, gear_pair, write_errors
+from support.gearing.deviating_teeth import PAIR, UNIT, write_law, write_teeth
+from support.gearing.gear_mesh import STATES, gear_pair, write_errors
 
 from herringbone.components.gear_mesh.teeth import toothed
 from herringbone.core import ResourceError

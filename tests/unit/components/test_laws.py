@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.deviating_teeth import PAIR, write_law, write_teeth
+from support.gearing.deviating_teeth import PAIR, write_law, write_teeth
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance

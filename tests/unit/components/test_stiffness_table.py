@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support.gear_mesh import write_table
+from support.gearing.gear_mesh import write_table
 
 from herringbone.components.resources.stiffness_table import read_stiffness_table
 from herringbone.core import ResourceError

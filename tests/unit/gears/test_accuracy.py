@@ -4,7 +4,7 @@ from dataclasses import astuple
 
 import numpy as np
 import pytest
-from support.gears import HELICAL, SPUR, THESIS, gear_pair
+from support.gearing.gears import HELICAL, SPUR, THESIS, gear_pair
 
 from herringbone.core import HerringboneError, ParameterError, ResourceError
 from herringbone.gears.accuracy.deviation_file import read_deviations, write_deviations

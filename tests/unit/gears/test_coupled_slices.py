@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from support.gears import SPUR, THESIS, gear_pair
+from support.gearing.gears import SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.modification import Modification

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.gears import HELICAL, SPUR, THESIS, gear_pair
+from support.gearing.gears import HELICAL, SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.core.places.paths import CACHE_VARIABLE

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.gears import THESIS, gear_pair
+from support.gearing.gears import THESIS, gear_pair
 
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.places.paths import component_folder

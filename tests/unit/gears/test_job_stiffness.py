@@ -8,7 +8,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from support.gears import SPUR, THESIS, gear_pair
+from support.gearing.gears import SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.core.places.paths import CACHE_VARIABLE

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from scipy.optimize import brentq
-from support.gears import THESIS, gear_pair
+from support.gearing.gears import THESIS, gear_pair
 
 from herringbone.components.shipped_pair import SHIPPED_PAIR
 from herringbone.core import ParameterError

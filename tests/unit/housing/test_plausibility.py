@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.io
 import scipy.sparse as sp
-from support.fe_files import NODES, SEATS
+from support.files.fe_files import NODES, SEATS
 from support.housing import small_housing
 
 from herringbone.core import HerringboneError, ResourceError

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from matplotlib.collections import QuadMesh
-from support.gears import SPUR, THESIS, gear_pair
+from support.gearing.gears import SPUR, THESIS, gear_pair
 
 from herringbone.gears.job import GearJob
 from herringbone.gears.load.figures import Conditions, loaded_figures

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from support.c_housing import c_housing_fmu
+from support.foreign.c_housing import c_housing_fmu
 
 import herringbone as hb
 from herringbone.analysis.leaner.form import Form

@@ -5,7 +5,7 @@ import re
 from collections import Counter
 
 import pytest
-from support.c_flange import c_flange
+from support.foreign.c_flange import c_flange
 
 from herringbone.analysis.finding import Verdict, judged
 from herringbone.analysis.flange import contract, extent, work

@@ -11,7 +11,7 @@ from pathlib import Path
 import fmpy
 import pandas as pd
 import pytest
-from support.gear_mesh import write_table
+from support.gearing.gear_mesh import write_table
 
 from herringbone.commands.main import main
 from herringbone.core.places.paths import component_folder

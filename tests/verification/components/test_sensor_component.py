@@ -9,7 +9,7 @@ from scipy.signal import butter, freqs_zpk
 
 import herringbone as hb
 from herringbone.analysis.equilibrium import equilibrium
-from herringbone.analysis.figures.velocity_sensor import VelocitySensor
+from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.linear_parts import linear_network
 from herringbone.analysis.twin.composite import make_composite

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from fuzz.campaign import last_commit
 from support.compiler import needs_compiler
-from support.fmi2_host import Fmi2Host
-from support.fmi3_host import Fmi3Host
+from support.hosts.fmi2 import Fmi2Host
+from support.hosts.fmi3 import Fmi3Host
 
 from herringbone.core.declaring.hosting import Wanted
 from herringbone.running.exporting.system_fmu import export_fmu

@@ -8,8 +8,8 @@ import pytest
 from fmpy import read_model_description
 from fmpy.fmi1 import FMICallException
 from support.compiler import needs_compiler
-from support.fmi2_host import Fmi2Host
-from support.rig_as_one import rig_as_one
+from support.hosts.fmi2 import Fmi2Host
+from support.rig.as_one import rig_as_one
 
 from herringbone.core import Instance
 from herringbone.running.exporting.system_fmu import export_fmu

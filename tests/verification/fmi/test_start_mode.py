@@ -7,7 +7,7 @@ import pytest
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
 from support.compiler import needs_compiler
-from support.fmi2_host import Fmi2Host
+from support.hosts.fmi2 import Fmi2Host
 
 import herringbone as hb
 from herringbone.core import ParameterError

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
 from support.compiler import needs_compiler
-from support.exchange import ExchangeHost
+from support.hosts.exchange import ExchangeHost
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance

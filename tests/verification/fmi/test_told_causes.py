@@ -9,9 +9,9 @@ import pytest
 from fmpy import read_model_description
 from fmpy.fmi1 import FMICallException
 from support.compiler import needs_compiler
-from support.fmi2_host import Fmi2Host
-from support.fmi3_host import Fmi3Host
-from support.own_pair import write_pair
+from support.gearing.own_pair import write_pair
+from support.hosts.fmi2 import Fmi2Host
+from support.hosts.fmi3 import Fmi3Host
 
 from herringbone.commands import main as cli
 from herringbone.core.declaring.hosting import Given, Wanted

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from support.deviating_teeth import PAIR, write_law
-from support.gear_mesh import gear_pair
+from support.gearing.deviating_teeth import PAIR, write_law
+from support.gearing.gear_mesh import gear_pair
 
 from herringbone.components.gear_mesh.teeth import _material
 from herringbone.core.places.paths import component_folder

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.gears import THESIS, gear_pair
+from support.gearing.gears import THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.corner_contact import corner_separation, meshing_impact

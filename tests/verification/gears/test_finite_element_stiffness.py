@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.gears import DRAWN_STEEP, DRAWN_WIDE, HELICAL, SPUR, THESIS, gear_pair
+from support.gearing.gears import DRAWN_STEEP, DRAWN_WIDE, HELICAL, SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.gears.files.gear_file import read_gear_file

@@ -8,8 +8,8 @@ pair, so that one half shows it.
 
 import numpy as np
 import pytest
-from support.deviating_teeth import PAIR, deflections, write_law, write_teeth
-from support.gear_mesh import gear_pair
+from support.gearing.deviating_teeth import PAIR, deflections, write_law, write_teeth
+from support.gearing.gear_mesh import gear_pair
 
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh.teeth import toothed

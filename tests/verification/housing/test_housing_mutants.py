@@ -1,7 +1,7 @@
 """Housings in C that are wrong in one way each: `check --as housing` says which."""
 
 import pytest
-from support.c_housing import c_housing_fmu
+from support.foreign.c_housing import c_housing_fmu
 
 from herringbone.commands import main as cli
 

@@ -7,7 +7,7 @@ With an error of the power p of the step the difference of both runs is 1 - 2^-p
 import json
 
 import pytest
-from support.c_housing import c_housing_fmu
+from support.foreign.c_housing import c_housing_fmu
 
 import herringbone as hb
 from herringbone.commands.main import main

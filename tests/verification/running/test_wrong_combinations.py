@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.gear_mesh import constant_table
+from support.gearing.gear_mesh import constant_table
+from support.gearing.own_pair import write_pair
 from support.housing import small_housing
-from support.own_pair import write_pair
 
 import herringbone as hb
 from herringbone.core import HerringboneError

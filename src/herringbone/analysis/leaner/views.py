@@ -18,8 +18,8 @@ from herringbone.analysis.figures.modal_response import (
 )
 from herringbone.analysis.figures.radiated_power import AIR_DENSITY, SPEED_OF_SOUND, level_db
 from herringbone.analysis.figures.sensing.sensors import chain_of
+from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.analysis.figures.system_housings import data_of
-from herringbone.analysis.figures.velocity_sensor import VelocitySensor
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Role
 from herringbone.cosim.structure.system import System

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
-from herringbone.analysis.figures.velocity_sensor import VelocitySensor
+from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.analysis.measured.lines import line_amplitudes, told_speed
 from herringbone.analysis.measured.record import MeasuredRecord
 from herringbone.core import ParameterError

@@ -6,7 +6,7 @@ from pathlib import Path
 from herringbone.analysis.asked import of_both_gears
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.sensing.sensors import sensor_figures
-from herringbone.analysis.figures.velocity_sensor import sensor_velocity
+from herringbone.analysis.figures.sensing.velocity_sensor import sensor_velocity
 from herringbone.analysis.measured.beside import Beside, Predicted, beside
 from herringbone.analysis.measured.record import read_measured
 from herringbone.core import ParameterError

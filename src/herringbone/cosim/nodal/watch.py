@@ -5,10 +5,10 @@ A repeated step gives pairs: the same start, other inputs. At each node
     delta y = D delta u_held + what states make of delta u,
 
 the latter in k pieces at most k^2 times as much as in one. Where the rest exceeds a tenth of what D
-explains, and what states may explain, D is measured anew
-before the next step: trial steps of the last piece's length l / 2^k from the saved state, with each
-input changed, extrapolated to zero as in `cosim.signature.response`. It stays the same during a
-step, so that a repeated step repeats. What states make of an input is measured with it.
+explains, and what states may explain, D is measured anew before the next step: trial steps of the
+last piece's length l / 2^k from the saved state, with each input changed, extrapolated to zero as
+in `cosim.signature.feedthrough.response`. It stays the same during a step, so that a repeated step
+repeats. What states make of an input is measured with it.
 """
 
 import math

@@ -6,12 +6,12 @@ import numpy as np
 
 from herringbone.core.part import PartVariable
 from herringbone.cosim.signature.amplitudes import RATIO, amplitude
-from herringbone.cosim.signature.feedthrough import SAME, feedthrough_of, runs_on
+from herringbone.cosim.signature.feedthrough.at_start import SAME, feedthrough_of, runs_on
+from herringbone.cosim.signature.feedthrough.later import later_feedthrough
+from herringbone.cosim.signature.feedthrough.noisy import noisy_feedthrough
 from herringbone.cosim.signature.inner_speeds import inner_speeds
 from herringbone.cosim.signature.laboratory import Laboratory
-from herringbone.cosim.signature.later import later_feedthrough
 from herringbone.cosim.signature.memory import Pulses, pulses
-from herringbone.cosim.signature.noise import noisy_feedthrough
 from herringbone.cosim.signature.rates import rates_of
 from herringbone.cosim.signature.rotation import InputRule, pairs, rule_of
 from herringbone.cosim.signature.signature import Answer, Findings, Kind, Signature

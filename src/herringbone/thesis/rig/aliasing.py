@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.figures.sensing.plateaus import plateaus
+from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor, sensor_velocity
 from herringbone.analysis.figures.spectra import amplitude_spectrum, mesh_frequency
-from herringbone.analysis.figures.velocity_sensor import VelocitySensor, sensor_velocity
 from herringbone.result.result import TIME
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.pair.given import JOB

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from herringbone.analysis.figures.velocity_sensor import VelocitySensor, sensor_velocity
+from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor, sensor_velocity
 from herringbone.analysis.measured.beside import Beside, Predicted, beside
 from herringbone.analysis.measured.record import MeasuredRecord
 from herringbone.result.result import TIME

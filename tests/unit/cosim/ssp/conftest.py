@@ -3,7 +3,7 @@
 import zipfile
 
 import pytest
-from support.described_fmus import BODY, ELEMENT, SSD, make_fmu
+from support.foreign.described_fmus import BODY, ELEMENT, SSD, make_fmu
 
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import PartSpec, System

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from fmpy.ssp import ssd as fmpy_ssp
 from lxml import etree
-from support.described_fmus import SSD
+from support.foreign.described_fmus import SSD
 
 from herringbone.core import StructureError
 from herringbone.cosim.ssp.read import read_ssp

@@ -3,7 +3,7 @@
 import zipfile
 
 import pytest
-from support.described_fmus import ELEMENT, SSD, make_fmu
+from support.foreign.described_fmus import ELEMENT, SSD, make_fmu
 
 from herringbone.core import FmuError, HerringboneError, StructureError
 from herringbone.cosim.ssp.read import read_ssp

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from fmpy.ssp import ssd as fmpy_ssp
 from lxml import etree
-from support.described_fmus import BODY, SSD, make_fmu
+from support.foreign.described_fmus import BODY, SSD, make_fmu
 
 from herringbone.core import ParameterError
 from herringbone.cosim.ssp.described import DescribedPart

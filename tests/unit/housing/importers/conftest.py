@@ -3,7 +3,7 @@
 import pytest
 import scipy.io
 import scipy.sparse as sp
-from support.fe_files import SEATS, frame_model
+from support.files.fe_files import SEATS, frame_model
 from support.imported_housing import seat_input
 
 

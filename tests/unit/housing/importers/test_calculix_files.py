@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.fe_files import NODES, SEATS, frd_text, modes_of
+from support.files.fe_files import NODES, SEATS, frd_text, modes_of
 from support.imported_housing import assert_same_receptance, exact_receptance, load, refusal
 
 from herringbone.housing.files.writer import compliance_text

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.io
 import scipy.sparse as sp
-from support.fe_files import SEATS
+from support.files.fe_files import SEATS
 from support.imported_housing import load, refusal
 
 from herringbone.components.ports import HALVES

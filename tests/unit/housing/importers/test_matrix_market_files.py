@@ -3,7 +3,7 @@
 import numpy as np
 import scipy.io
 import scipy.sparse as sp
-from support.fe_files import NODES, modes_of
+from support.files.fe_files import NODES, modes_of
 from support.imported_housing import BAND, assert_same_receptance, exact_receptance, load
 
 

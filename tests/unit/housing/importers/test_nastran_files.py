@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.fe_files import dmig_text, grid_text, op4_text
+from support.files.fe_files import dmig_text, grid_text, op4_text
 from support.imported_housing import assert_same_receptance, load, refusal
 
 from herringbone.housing.importers.dmig import read_dmig

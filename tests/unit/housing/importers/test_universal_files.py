@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support.fe_files import NODES, modes_of, text_2414
+from support.files.fe_files import NODES, modes_of, text_2414
 from support.imported_housing import assert_same_receptance, load, refusal
 
 from herringbone.housing.importers.mode_set import real_shape

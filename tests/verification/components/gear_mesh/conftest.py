@@ -1,7 +1,7 @@
 """The table that tests of the gear pair share."""
 
 import pytest
-from support.gear_mesh import constant_table
+from support.gearing.gear_mesh import constant_table
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ independent prototype of the same equations found.
 import math
 
 import pytest
-from support.gear_energy import angles
-from support.gear_mesh import SHIPPED, gear_pair, mesh_force, random_state, rhs, set_states
+from support.gearing.gear_energy import angles
+from support.gearing.gear_mesh import SHIPPED, gear_pair, mesh_force, random_state, rhs, set_states
 
 
 @pytest.mark.parametrize(("zeta", "expected"), [(0.03, 3078), (0.1, 10261), (0.17, 17444)])

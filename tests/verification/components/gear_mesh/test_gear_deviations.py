@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from support.gear_mesh import (
+from support.gearing.gear_mesh import (
     INDEX,
     SHIPPED,
     STATES,

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.deviating_teeth import PAIR, mirrored_teeth, write_law, write_teeth
-from support.gear_energy import angles, residual
-from support.gear_mesh import (
+from support.gearing.deviating_teeth import PAIR, mirrored_teeth, write_law, write_teeth
+from support.gearing.gear_energy import angles, residual
+from support.gearing.gear_mesh import (
     INDEX,
     SHIPPED,
     SPEED,

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from scipy.integrate import solve_ivp
-from support.gear_mesh import (
+from support.gearing.gear_mesh import (
     FORCES,
     INDEX,
     MESH_STIFFNESS,

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 from scipy.linalg import eigh
-from support.gear_mesh import (
+from support.gearing.gear_mesh import (
     AXIAL_STIFFNESS,
     INDEX,
     MESH_STIFFNESS,

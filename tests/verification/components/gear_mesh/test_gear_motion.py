@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 import pytest
-from support.gear_energy import angles, apex, energy, energy_slopes
-from support.gear_mesh import (
+from support.gearing.gear_energy import angles, apex, energy, energy_slopes
+from support.gearing.gear_mesh import (
     FORCES,
     INDEX,
     SHIPPED,

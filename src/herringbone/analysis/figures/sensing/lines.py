@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, spectral_lines
-from herringbone.analysis.figures.velocity_sensor import VelocitySensor
 
 _MOST_ORDERS = 50
 

@@ -17,7 +17,7 @@ from herringbone.analysis.figures.modal_response import housing_of, modal_veloci
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.remembered_figures import figure_of
 from herringbone.analysis.figures.sensing.lines import Felt, SensorLine, sensor_lines
-from herringbone.analysis.figures.velocity_sensor import VelocitySensor
+from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.components.registry import component_for
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role

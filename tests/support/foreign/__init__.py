@@ -1,0 +1,1 @@
+"""Foreign FMUs of tests, in C and Python, and systems of them."""

@@ -1,0 +1,1 @@
+"""Gear pairs of tests, their teeth and energies."""

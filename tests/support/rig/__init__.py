@@ -1,0 +1,1 @@
+"""The test rig, as several tests take it."""
