@@ -37,7 +37,7 @@ def _measured(repeats: int, steps: int) -> list[StepPart]:
     run = core.solution(_STEPS)
     run.enter(0.0, _BEFORE)
     run.part(0.0, _BEFORE, STEP, np.array([np.inf]))
-    arrays, rungs = run.arrays, run.rungs_of(STEP)
+    arrays, rungs = run.arrays, run.matrices.of(STEP)
     given, chosen, laws = repeated.given(arrays)
     found = {
         f"laws at {_STEPS.degree} nodes": lambda: repeated.laws(_AGAIN, arrays, _BEFORE),

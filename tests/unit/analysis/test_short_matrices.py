@@ -31,8 +31,8 @@ def made(core):
     """A march at its start, and its matrices of a step."""
     run = core.solution(STEPS)
     run.enter(0.0, 1.0)
-    rungs = run.rungs_of(LENGTH)
-    run.make(rungs, 0)
+    rungs = run.matrices.of(LENGTH)
+    run.matrices.make(rungs, 0)
     return run, rungs
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.lean import Lean, state_names, with_harmonics
-from herringbone.analysis.twin.condensed.wanted import places_seen
+from herringbone.analysis.twin.condensed.recorded.wanted import places_seen
 from herringbone.core import StructureError
 from herringbone.core.declaring.roles import PortKind, Role
 

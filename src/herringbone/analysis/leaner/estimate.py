@@ -30,7 +30,7 @@ from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.outputs import coefficients_of, of_rows
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure, alternating_rows
-from herringbone.analysis.twin.condensed.wanted import Wanted
+from herringbone.analysis.twin.condensed.recorded.wanted import Wanted
 from herringbone.core import ParameterError
 from herringbone.core.one_thread import one_blas_thread
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.steady.of_system import SystemLaws
-from herringbone.analysis.twin.condensed.wanted import places_seen
+from herringbone.analysis.twin.condensed.recorded.wanted import places_seen
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.core.declaring.roles import Role
 from herringbone.core.one_thread import one_blas_thread

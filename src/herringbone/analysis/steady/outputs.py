@@ -8,7 +8,7 @@ import numpy as np
 from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time
 from herringbone.analysis.steady.harmonic_balance.orbit import Orbit
 from herringbone.analysis.steady.structure import Structure
-from herringbone.analysis.twin.condensed.wanted import Wanted
+from herringbone.analysis.twin.condensed.recorded.wanted import Wanted
 
 _AT_ONCE = 1 << 22
 """Harmonics times places that are held at once."""

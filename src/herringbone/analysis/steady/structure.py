@@ -14,7 +14,7 @@ from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.of_system import SystemLaws, problem_of, turns_of
 from herringbone.analysis.steady.set_points import SetPoints
 from herringbone.analysis.twin.condensed.lean import Lean
-from herringbone.analysis.twin.condensed.wanted import Wanted
+from herringbone.analysis.twin.condensed.recorded.wanted import Wanted
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.core import StructureError, common_period
 from herringbone.core.declaring.roles import GEARS, Quantity, Role

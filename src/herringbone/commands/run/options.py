@@ -20,6 +20,25 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     add_scene(sub, optional=True)
     add_operating_point(sub)
+    _add_coupling(sub)
+    sub.add_argument("--t-end", type=float, help="duration in s")
+    sub.add_argument("--record-step", type=float, help="time between records in s")
+    sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
+    add_kind(sub)
+    add_replacements(sub)
+    add_cells(sub)
+    add_start_values(sub)
+    sub.add_argument(
+        "--no-probe", action="store_true",
+        help="take foreign FMUs by what they declare, without trial steps on further instances",
+    )  # fmt: skip
+    _add_models(sub)
+    _add_errors(sub)
+    _add_results(sub)
+
+
+def _add_coupling(sub: argparse.ArgumentParser) -> None:
+    """How parts are coupled, and in which steps."""
     sub.add_argument(
         "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
     )
@@ -35,17 +54,10 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--slow", metavar=SLOW, help="heavy bodies that step once in N communication steps"
     )
-    sub.add_argument("--t-end", type=float, help="duration in s")
-    sub.add_argument("--record-step", type=float, help="time between records in s")
-    sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
-    add_kind(sub)
-    add_replacements(sub)
-    add_cells(sub)
-    add_start_values(sub)
-    sub.add_argument(
-        "--no-probe", action="store_true",
-        help="take foreign FMUs by what they declare, without trial steps on further instances",
-    )  # fmt: skip
+
+
+def _add_models(sub: argparse.ArgumentParser) -> None:
+    """What stands for the parts: one core of them, or a leaner model."""
     sub.add_argument(
         "--fuse", action="store_true",
         help="condense all own parts into one core, marched by steps that --tolerance chooses, or "
@@ -59,6 +71,10 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--plan", action="store_true",
         help="find the least model and the solver that answer what the scene asks, and run these",
     )  # fmt: skip
+
+
+def _add_errors(sub: argparse.ArgumentParser) -> None:
+    """What the run's errors are measured against."""
     memory = "memory grows with the duration"
     sub.add_argument(
         "--reference", action="store_true", help=f"errors against the monolithic twin; {memory}"
@@ -66,6 +82,10 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--verify", action="store_true", help=f"errors against a run with half the step; {memory}"
     )
+
+
+def _add_results(sub: argparse.ArgumentParser) -> None:
+    """Where results go, and what is written or printed of them."""
     sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
     sub.add_argument(
         "--no-pictures", action="store_true",

@@ -58,6 +58,18 @@ def _swing(b: np.ndarray, gear: int, half: int, a: float, alpha: float) -> tuple
 
 
 @kernel
+def _gap_shaft(b: np.ndarray, gear: int) -> tuple[float, float, float]:
+    """Forces [N] and torque [N m] of the shaft between the halves of a gear."""
+    own, y, z, twist = gear * at.GEAR, at.Y + 2 * gear, at.Z + 2 * gear, at.TWIST_P + 2 * gear
+    bend = b[at.K_Y[0] + own] * (b[y] - b[y + 1])
+    bend += b[at.C_Y[0] + own] * (b[y + at.RATE] - b[y + 1 + at.RATE])
+    stretch = b[at.K_Z[0] + own] * (b[z] - b[z + 1])
+    stretch += b[at.C_Z[0] + own] * (b[z + at.RATE] - b[z + 1 + at.RATE])
+    torsion = b[at.K_T[0] + own] * b[twist] + b[at.C_T[0] + own] * b[twist + at.RATE]
+    return bend, stretch, torsion
+
+
+@kernel
 def derivatives(
     b: np.ndarray,
     dx: np.ndarray,
@@ -85,11 +97,7 @@ def derivatives(
             b[at.RB[0] + own],
         )
         y, z, twist = at.Y + first, at.Z + first, at.TWIST_P + first
-        bend = b[at.K_Y[0] + own] * (b[y] - b[y + 1])
-        bend += b[at.C_Y[0] + own] * (b[y + at.RATE] - b[y + 1 + at.RATE])
-        stretch = b[at.K_Z[0] + own] * (b[z] - b[z + 1])
-        stretch += b[at.C_Z[0] + own] * (b[z + at.RATE] - b[z + 1 + at.RATE])
-        torsion = b[at.K_T[0] + own] * b[twist] + b[at.C_T[0] + own] * b[twist + at.RATE]
+        bend, stretch, torsion = _gap_shaft(b, gear)
         dx[y + at.RATE] = (b[at.F_Y[0] + first * at.HALF] - bend + sign * normal_left) * per_mass
         dx[y + 1 + at.RATE] = (
             b[at.F_Y[0] + (first + 1) * at.HALF] + bend + sign * normal_right

@@ -35,10 +35,14 @@ class Sampling(NamedTuple):
 
 def sampling(rhs: Rhs, body: Body, at: Places, owner: str) -> Sampling:
     """Compile them; `owner`: name of the component, for messages."""
-    xs, vs, sizes, turning, _, n = body
-    m, turns = len(xs), len(turning)
-    dx_at, kept_at, k_at = at.dx, at.kept, at.k
-    motion_at, g_at, mean_at, drift_at, x_at = at.motion, at.g, at.mean, at.drift, at.x
+    turned, accelerate = _turner(body, at, owner), _accelerator(rhs, body, at, owner)
+    average = _averager(turned, accelerate, body, at, owner)
+    return Sampling(turned, accelerate, average, _sampler(turned, accelerate, body, at, owner))
+
+
+def _turner(body: Body, at: Places, owner: str) -> Callable:
+    turning, turns, n = body.turning, len(body.turning), body.states
+    dx_at, kept_at = at.dx, at.kept
 
     @inner(owner)
     def turned(b: np.ndarray, t: float) -> None:
@@ -47,6 +51,14 @@ def sampling(rhs: Rhs, body: Body, at: Places, owner: str) -> Sampling:
             b[i] = b[kept_at + i]
         for k in range(turns):
             b[turning[k]] += b[dx_at + turning[k]] * t
+
+    return turned
+
+
+def _accelerator(rhs: Rhs, body: Body, at: Places, owner: str) -> Callable:
+    vs, turning = body.vs, body.turning
+    m, turns = len(vs), len(turning)
+    dx_at, kept_at = at.dx, at.kept
 
     @inner(owner)
     def accelerate(b: np.ndarray, t: float, r: np.ndarray) -> None:
@@ -58,6 +70,15 @@ def sampling(rhs: Rhs, body: Body, at: Places, owner: str) -> Sampling:
             dx[turning[k]] = r[k]
         for i in range(m):
             r[i] = dx[vs[i]]
+
+    return accelerate
+
+
+def _averager(
+    turned: Callable, accelerate: Callable, body: Body, at: Places, owner: str
+) -> Callable:
+    xs, vs, sizes, m = body.xs, body.vs, body.sizes, len(body.xs)
+    k_at, mean_at, drift_at, x_at = at.k, at.mean, at.drift, at.x
 
     @inner(owner)
     def average(b: np.ndarray, period: float) -> None:
@@ -82,6 +103,15 @@ def sampling(rhs: Rhs, body: Body, at: Places, owner: str) -> Sampling:
                         to = k_at + order * m * m + i * m + j
                         b[to] -= (moved[i] - base[i]) / (size * _PHASES)
 
+    return average
+
+
+def _sampler(
+    turned: Callable, accelerate: Callable, body: Body, at: Places, owner: str
+) -> Callable:
+    xs, vs, m = body.xs, body.vs, len(body.xs)
+    motion_at, g_at, mean_at, drift_at, x_at = at.motion, at.g, at.mean, at.drift, at.x
+
     @inner(owner)
     def sample(b: np.ndarray, period: float) -> float:
         """Accelerations over two periods less those of the motion; see `split`."""
@@ -98,4 +128,4 @@ def sampling(rhs: Rhs, body: Body, at: Places, owner: str) -> Sampling:
                 row[i] -= motion[2 * SAMPLES * m + i]
         return split(b[g_at:mean_at], b[mean_at:drift_at], b[drift_at:x_at], m)
 
-    return Sampling(turned, accelerate, average, sample)
+    return sample

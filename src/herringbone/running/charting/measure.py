@@ -2,10 +2,12 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from herringbone.analysis.accuracy.converged import Converged
 from herringbone.analysis.accuracy.step_ladder import (
     STEPS,
+    OpenParts,
     Progress,
     Reference,
     charted_algorithms,
@@ -18,6 +20,7 @@ from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms import AUTO, LI, Algorithm, parse_algorithm, refuse_adaptive
+from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
@@ -73,42 +76,71 @@ def measure(
     """
     chosen = _curves(algorithms, tolerances)
     wishes = Wishes(
-        t_end=t_end,
-        values=values or {},
-        gear=gear,
-        housing=housing,
+        t_end=t_end, values=values or {}, gear=gear, housing=housing,
         replace_parts=replace_parts or {},
+    )  # fmt: skip
+    structure, options, notes = prepared(
+        system, scene, operated(system, scene, wishes, speed, torque)
     )
-    wishes = operated(system, scene, wishes, speed, torque)
-    structure, options, notes = prepared(system, scene, wishes)
     fmu, why = choose_kind(fmu)
     grids = ladder(steps, options.t_end)
     if structure.foreign_parts and tolerances:
         raise ParameterError("tolerances: with foreign FMUs a curve is drawn over fixed steps only")
     if fuse:
         refuse_strangers(structure)
+    shown = _Shown(structure, chosen, grids, progress)
     opened = _Opened(structure, fmu, grids[0].step)
-    if structure.foreign_parts:
-        finer = Converged(structure, opened, grids)
-        found = list(run_points(structure, opened, finer, chosen, grids, progress))
-        modes, micro_step, notes = 0, 0.0, (*notes, *why, finer.note)
-    else:
-        twin = Reference(structure, grids)
-        found = list(run_points(structure, opened, twin, chosen, grids, progress))
-        if fuse:
-            found += [(p, (_SET_UP,)) for p in fused_points(structure, twin, grids, progress)]
-        (modes, micro_step), notes = _internals(twin.twin), (*notes, *why)
+    found = (
+        _beside_finer(shown, opened)
+        if structure.foreign_parts
+        else _beside_twin(shown, opened, fuse=fuse)
+    )
     return WorkPrecision(
         structure.name,
         options.name,
         options.t_end,
         fmu,
-        modes,
-        micro_step,
-        tuple(point for point, _ in found),
-        tuple(dict.fromkeys([*notes, *said_once(found)])),
+        found.modes,
+        found.micro_step,
+        tuple(point for point, _ in found.points),
+        tuple(dict.fromkeys([*notes, *why, *found.notes, *said_once(found.points)])),
         bool(structure.foreign_parts),
     )
+
+
+class _Shown(NamedTuple):
+    """What is run for a chart."""
+
+    system: System
+    algorithms: Sequence[Algorithm]
+    grids: Sequence[Grid]
+    progress: Progress
+
+
+class _Measured(NamedTuple):
+    """Points with notes on them, what the parts themselves resolve, and notes on the reference."""
+
+    points: Sequence[tuple[Point, Sequence[str]]]
+    modes: int = 0
+    micro_step: float = 0.0
+    notes: tuple[str, ...] = ()
+
+
+def _beside_finer(shown: _Shown, opened: OpenParts) -> _Measured:
+    """Errors against the same parts at shorter steps: foreign ones have no twin."""
+    system, algorithms, grids, progress = shown
+    finer = Converged(system, opened, grids)
+    found = list(run_points(system, opened, finer, algorithms, grids, progress))
+    return _Measured(found, notes=(finer.note,))
+
+
+def _beside_twin(shown: _Shown, opened: OpenParts, *, fuse: bool) -> _Measured:
+    system, algorithms, grids, progress = shown
+    twin = Reference(system, grids)
+    found = list(run_points(system, opened, twin, algorithms, grids, progress))
+    if fuse:
+        found += [(p, (_SET_UP,)) for p in fused_points(system, twin, grids, progress)]
+    return _Measured(found, *_internals(twin.twin))
 
 
 def said_once(found: Sequence[tuple[Point, Sequence[str]]]) -> Iterator[str]:

@@ -9,7 +9,7 @@ import pytest
 
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.twin import reference
-from herringbone.analysis.twin.condensed import solution
+from herringbone.analysis.twin.condensed import step_matrices
 from herringbone.analysis.twin.condensed.equations import take_apart
 from herringbone.analysis.twin.condensed.modes import make_modes
 from herringbone.analysis.twin.condensed.solution import Solution
@@ -86,7 +86,7 @@ def test_separation_needs_the_places_where_laws_bend(monkeypatch):
     located = errors(twin.solve(TIMES, BEARING + SEAT), "separation")
     assert located < 5e-6
     assert twin.counts[1] > 50
-    monkeypatch.setattr(solution, "HALVINGS", 0)
+    monkeypatch.setattr(step_matrices, "HALVINGS", 0)
     assert error_of("separation", 20e-6) > 50.0 * located
 
 

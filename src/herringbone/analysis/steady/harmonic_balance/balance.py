@@ -11,17 +11,18 @@ answers to, and values without tangents are replaced by what the laws give. Of a
 meshes those harmonics are in use that are not negligible.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.correction import correct_at_once
 from herringbone.analysis.steady.harmonic_balance.families import Families
-from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on, squares
+from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on
+from herringbone.analysis.steady.harmonic_balance.in_use import in_use, share_outside
 from herringbone.analysis.steady.harmonic_balance.krylov import correct_by_families
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
+from herringbone.analysis.steady.harmonic_balance.residual import change_of, residual_of, rest_of
 from herringbone.analysis.steady.harmonic_balance.response import Response
 
 _ITERATIONS = 40
@@ -121,7 +122,9 @@ class Balance:
         if self.period.meshes > 1:
             used = known
             if not every:
-                used = self._in_use(self._response(speed, orders[:1]), values, known)
+                used = in_use(
+                    self.problem, self.period, self._response(speed, orders[:1]), values, known
+                )
             orders = np.intersect1d(used, orders)
         channels = self._channels(orders, values, known)
         return self._answered(self._response(speed, orders), channels)
@@ -145,7 +148,7 @@ class Balance:
             iterations += 1
             now, laws = self._with_orders(now, samples)
             off = laws - now.channels[:count]
-            before, merit = merit, self._size(samples, off, now.response.orders)
+            before, merit = merit, self._off(samples, off, now.response.orders)
             if not merit <= before and change > _SMALL and part > 0.5**_HALVINGS:
                 part *= 0.5  # not as far
                 step = on(now.response.orders, step, stepped)
@@ -161,7 +164,7 @@ class Balance:
                 break
             step, part = self._correction(now.response, samples, off, whole=hard), 1.0
             last, now, stepped = now, self._moved(now, step), now.response.orders
-            change = self._change(last.z, now.z)
+            change = change_of(problem, last.z, now.z)
             if change <= close or merit <= _ROUNDING:
                 break
         if last.response.orders.size != now.response.orders.size:
@@ -187,7 +190,7 @@ class Balance:
         step = np.zeros_like(now.channels)
         step[:count] = laws - now.channels[:count]
         moved = now.response.coordinates(step)
-        residual = self._size(samples, step[:count], now.response.orders)
+        residual = self._off(samples, step[:count], now.response.orders)
         return Orbit(
             now.channels, now.response, now.q, moved, step, now.angle, samples.kept(), residual,
             residual, 1, converged=True, resolved=self.period,
@@ -206,13 +209,13 @@ class Balance:
         speed = self._first_speed(channels)
         now = self._answered(self._response(speed, orders), channels)
         samples = self.problem.laws(self._arguments(now))
-        laws = in_frequency(self._rest(samples), orders)
+        laws = in_frequency(rest_of(self.problem, samples), orders)
         off = laws - channels[: len(laws)]
         nothing = np.zeros_like(channels)
         still = np.zeros_like(now.q)
         return Orbit(
             channels, now.response, now.q, still, nothing, now.angle, samples.kept(), 0.0,
-            self._size(samples, off, orders), 1, converged=False, resolved=self.period,
+            self._off(samples, off, orders), 1, converged=False, resolved=self.period,
         ), off  # fmt: skip
 
     def _moved(self, now: _Answered, step: np.ndarray) -> _Answered:
@@ -221,45 +224,18 @@ class Balance:
         channels[: len(step)] += step
         return self._answered(now.response, channels)
 
-    def _rest(self, samples: Samples) -> np.ndarray:
-        """Laws' values less mean tangents (values, places)."""
-        return (samples.f - samples.z @ self.problem.tangent.T).T
-
     def _with_orders(self, now: _Answered, samples: Samples) -> tuple[_Answered, np.ndarray]:
         """The motion on all orders that are in use, and the laws' values there."""
-        rest = self._rest(samples)
+        every = in_frequency(rest_of(self.problem, samples), self._every)
         if self.period.meshes == 1:
-            return now, in_frequency(rest, self._every)
-        every = in_frequency(rest, self._every)
-        used = self._in_use(now.response, every, self._every)
+            return now, every
+        used = in_use(self.problem, self.period, now.response, every, self._every)
         wanted = np.union1d(now.response.orders, used)
         if wanted.size > now.response.orders.size:
             own = now.channels[: self.problem.values]
             channels = self._channels(wanted, own, now.response.orders)
             now = self._answered(self._response(now.response.speed, wanted), channels)
         return now, every[:, np.searchsorted(self._every, wanted)]
-
-    def _in_use(self, answer: Response, values: np.ndarray, orders: np.ndarray) -> np.ndarray:
-        """Orders without which the values (values, harmonics) lose a share of their alternation.
-
-        Values count by what they move the stiff arguments by, at the mesh frequency.
-        """
-        weights = self._weights(answer, len(values))
-        energy = ((weights[:, None] * np.abs(values)) ** 2).sum(axis=0)
-        energy[0] = 0.0
-        ascending = np.argsort(energy)
-        left_out = np.cumsum(energy[ascending]) <= self.period.thin**2 * energy.sum()
-        used = np.ones(energy.size, dtype=bool)
-        used[ascending[left_out]] = False
-        used[0] = True
-        return orders[used]
-
-    def _weights(self, answer: Response, count: int) -> np.ndarray:
-        """(count,) what values move the stiff arguments by, at the mesh frequency."""
-        problem = self.problem
-        mesh = answer.at(np.array([0, self.period.meshes]))
-        gains = mesh.gain(problem.along, problem.along_angle, np.arange(count), 2)[:, :, 1]
-        return np.abs(problem.mean[:, None] * gains).sum(axis=0)
 
     def missing(self, orbit: Orbit, *, every: bool = False) -> Missing:
         """What the laws give at these places, and an orbit at fewer of them lacks.
@@ -271,23 +247,11 @@ class Balance:
         values, known = orbit.channels[: self.problem.values], orbit.response.orders
         now = self._begun(values, known, every=every)
         samples = self.problem.laws(self._arguments(now))
-        outside = self._outside(now.response, samples)
+        outside = share_outside(self.problem, self.period, now.response, samples)
         now, laws = self._with_orders(now, samples)
         found = np.zeros_like(now.channels)
         found[: len(laws)] = laws - now.channels[: len(laws)]
         return Missing(now.response, found, outside)
-
-    def _outside(self, answer: Response, samples: Samples) -> float:
-        """Share of the values' alternation that is at none of the lines."""
-        if not self.period.bases:
-            return 0.0
-        rest = self._rest(samples)
-        lines = in_frequency(rest, self._every)[:, 1:]
-        every = rest.var(axis=1)
-        other = np.maximum(every - 2.0 * (np.abs(lines) ** 2).sum(axis=1), 0.0)
-        weights = self._weights(answer, len(rest)) ** 2
-        whole = float(weights @ every)
-        return float(np.sqrt(weights @ other / whole)) if whole else 0.0
 
     def _arguments(self, now: _Answered) -> np.ndarray:
         """Arguments (places, arguments) in time."""
@@ -298,16 +262,10 @@ class Balance:
             z += self.problem.of_angle[:, None] * turned
         return np.ascontiguousarray(z.T)
 
-    def _size(self, samples: Samples, off: np.ndarray, orders: np.ndarray) -> float:
-        """How far stiff values are off, over their sizes."""
-        stiff = self.problem.stiff
-        size = np.abs(samples.f[:, stiff]).max(axis=0, initial=0.0)
-        if not size.all():  # contacts that are open all the time
-            rest = samples.f[:, stiff] - samples.z @ self.problem.tangent[stiff].T
-            size = np.where(size > 0.0, size, np.abs(rest).max(axis=0, initial=0.0))
-        size += np.finfo(float).tiny
+    def _off(self, samples: Samples, off: np.ndarray, orders: np.ndarray) -> float:
+        """How far stiff values are off where Newton solves for them, over their sizes."""
         low = orders <= self.period.order * self.period.meshes
-        return float(np.linalg.norm(off[stiff][:, low] / size[:, None]))
+        return residual_of(self.problem, samples, off, low)
 
     def _correction(
         self, answer: Response, samples: Samples, off: np.ndarray, *, whole: bool
@@ -318,11 +276,3 @@ class Balance:
             return correct_at_once(self.problem, answer, samples, off, period.order, whole=whole)
         families = Families(answer.orders, period.meshes, period.order)
         return correct_by_families(self.problem, answer, samples, off, families, _INEXACT)
-
-    def _change(self, before: np.ndarray, after: np.ndarray) -> float:
-        """What a correction changes the stiff arguments by, over their alternating part."""
-        rows = self.problem.directions @ after
-        alternating = squares(rows[:, 1:]).sum(axis=1)
-        moved = squares(rows - self.problem.directions @ before).sum(axis=1)
-        sizes = np.where(alternating > 0.0, alternating, np.inf)
-        return math.sqrt((moved / sizes).max(initial=0.0))

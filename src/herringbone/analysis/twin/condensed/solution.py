@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 
+from herringbone.analysis.twin.condensed.at_times import coordinates
 from herringbone.analysis.twin.condensed.march import (
     DONE,
     KEPT,
@@ -26,13 +27,9 @@ from herringbone.analysis.twin.condensed.rungs import (
     LOBATTO,
     Rungs,
     Shape,
-    coefficients,
     continued,
-    make_rung,
-    powers,
-    refer,
-    twice,
 )
+from herringbone.analysis.twin.condensed.step_matrices import HALVINGS, StepMatrices
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import HerringboneError
 from herringbone.core.declaring.variable import NODES
@@ -40,8 +37,6 @@ from herringbone.kernels.condensed.collocation import Nodes, Sharp
 from herringbone.kernels.condensed.correction import make_room
 from herringbone.kernels.condensed.lines import aligned, padded
 
-HALVINGS = 7
-"""Rungs below the base step."""
 CLOSE = 1e-8
 """Residual of the laws' values, over their size, whose correction solves a step.
 
@@ -55,7 +50,6 @@ _NEGLIGIBLE = 1e-5
 """Of `Fixed.close`: what a value moves a coordinate by, at most, to be left out of lean steps; 1e-3
 of the tolerance, see `fused.core.closeness`."""
 _AT_ONCE = 4096  # times that are kept by one call of the march
-_GRID = 1e-9  # of a step: a time this close to its start is its start
 
 
 class CoreStopped(HerringboneError):
@@ -81,6 +75,7 @@ class Solution:
 
     Attributes:
         state: where it stands.
+        matrices: of its steps.
     """
 
     def __init__(
@@ -99,7 +94,6 @@ class Solution:
         )
         self._corrections = make_room(len(system.stiff), degree, calls.tangent[-1])
         channels = system.equations.channels
-        self._size = 2 * modes.rates.size + modes.angles.size
         sharp, coarse = system.sharp, close >= COARSE
         if not coarse:
             sharp = np.concatenate([sharp, system.fine])
@@ -125,8 +119,7 @@ class Solution:
         self._reference = np.zeros(channels)
         self._work = _room_of(self._fixed, self.state)
         self._held, self._lengths = np.zeros((0, 0)), np.zeros((2, 0))
-        self._rungs: dict[float, Rungs] = {}
-        self._shared: dict[float, Rungs] = {}
+        self.matrices = StepMatrices(system, self._shape, self._reference)
 
     @property
     def arrays(self) -> Arrays:
@@ -144,7 +137,7 @@ class Solution:
         """Go on from there."""
         for name, array in self._remembered().items():
             array[...] = saved[name]
-        self._refer()
+        self.matrices.renew()
 
     def _remembered(self) -> dict[str, np.ndarray]:
         nodes = self._nodes
@@ -203,39 +196,15 @@ class Solution:
         if t1 <= t0:
             samples.held[:] = np.concatenate([self.state.q, self._ends])
         else:
-            rungs = self.rungs_of(h)
+            rungs = self.matrices.of(h)
             asked = Asked(rungs, samples, t0, round((t1 - t0) / h))
             status = RUNG_WANTED
             while status == RUNG_WANTED:
-                self.make(rungs, int(self.state.place[RUNG]))
+                self.matrices.make(rungs, int(self.state.place[RUNG]))
                 status = march(self.arrays, asked)
             if status != DONE:
                 self._fail(status, t0, rungs)
         return Samples(*(array[:count] for array in samples))
-
-    def rungs_of(self, h: float) -> Rungs:
-        """Matrices of steps of a length [s], and of shorter ones; see `make`."""
-        if h not in self._rungs:
-            lengths = [h / 2**k for k in range(HALVINGS + 1)]
-            self._shared[h] = shared = self._system.rungs(lengths, self._shape)
-            own = np.zeros_like(shared.made), np.zeros_like(shared.still)
-            self._rungs[h] = shared._replace(made=own[0], still=own[1])
-        return self._rungs[h]
-
-    def make(self, rungs: Rungs, rung: int) -> None:
-        """Fill in the matrices of a rung."""
-        if not rungs.made[rung]:
-            shared = self._shared[float(rungs.lengths[0])]
-            if not shared.made[rung]:
-                make_rung(shared, rung, self._modes, self._shape)
-            refer(rungs, rung, self._reference)
-            rungs.made[rung] = 1
-
-    def _refer(self) -> None:
-        """Let all matrices that are made be exact about the reference."""
-        for rungs in self._rungs.values():
-            for rung in np.flatnonzero(rungs.made):
-                refer(rungs, int(rung), self._reference)
 
     def _begin(self, t: float) -> None:
         """The laws' inputs and indicators at the start of a piece, as if a step had ended there."""
@@ -247,7 +216,7 @@ class Solution:
         z = (modes.arguments @ (state.q[:m] + 1j * state.q[m : 2 * m])).real
         self._nodes.z[0] = (
             z
-            + modes.of_angles @ (modes.angles + state.q[2 * m : self._size])
+            + modes.of_angles @ (modes.angles + state.q[2 * m : 2 * m + modes.angles.size])
             + modes.of_channels @ channels
         )
         self._nodes.start[:] = self._nodes.z[0]
@@ -256,7 +225,7 @@ class Solution:
         self._reference[: calls.value[-1]] = state.u.reshape(channels.size, -1)[
             : calls.value[-1], -1
         ]
-        self._refer()
+        self.matrices.renew()
         if self._fixed.lean:
             self._neglect()
 
@@ -292,30 +261,7 @@ class Solution:
 
     def coordinates(self, samples: Samples) -> np.ndarray:
         """What `State.q` is at the times of samples, (times, 2 modes + rotations)."""
-        q = samples.held[:, : self._size].copy()
-        inside = np.flatnonzero(samples.since > _GRID * samples.length)
-        if inside.size:
-            m = self._modes.rates.size
-            later, q[inside, 2 * m :] = self._later(samples, inside)
-            q[inside, :m], q[inside, m : 2 * m] = later.real, later.imag
-        return q
-
-    def _later(self, samples: Samples, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and angles (times, ...) at times inside of steps."""
-        modes, degree = self._modes, self.degree
-        m, size = modes.rates.size, self._size
-        held = samples.held[rows]
-        q = (held[:, :m] + 1j * held[:, m : 2 * m]).T
-        t, length = samples.since[rows], samples.length[rows]
-        nodes = held[:, self.state.q.size :].reshape(rows.size, -1, degree + 1)
-        driven = np.einsum("jn,tkn->jkt", coefficients(degree), nodes)
-        of_powers = modes.inputs @ driven  # powers, modes, times
-        of_powers *= ((t / length) ** np.arange(degree + 1)[:, None])[:, None]
-        once = powers(modes.rates[:, None], t[None, :], degree + 1)
-        growth = once[0] * q + (twice(once, t) * of_powers).sum(axis=0)
-        angle = held[:, 2 * m : size] + (modes.turns @ growth).real.T
-        now = np.exp(modes.rates[:, None] * t) * q + (once[:-1] * of_powers).sum(axis=0)
-        return now.T, angle
+        return coordinates(samples, self._modes, self.degree)
 
     def _fail(self, status: int, t0: float, rungs: Rungs) -> None:
         count, inside = self.state.place[:2]

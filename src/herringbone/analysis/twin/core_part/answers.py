@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from herringbone.analysis.twin.condensed.observing import show
+from herringbone.analysis.twin.condensed.recorded.observing import show
 from herringbone.analysis.twin.core_part.memory import PLACES, readers
 from herringbone.analysis.twin.core_part.stepping import (
     ANSWERED,

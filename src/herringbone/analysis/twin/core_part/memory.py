@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.twin.condensed.march_arrays import Calls, Fixed, Samples, State, Work
-from herringbone.analysis.twin.condensed.observing import Shown
+from herringbone.analysis.twin.condensed.recorded.observing import Shown
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.core.caching.generated import load_generated
 from herringbone.kernels.condensed.collocation import Nodes, Sharp, Table

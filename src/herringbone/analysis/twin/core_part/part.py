@@ -140,7 +140,7 @@ class CorePart:
                 if what == stepping.FOR_STEP:
                     self._lay_out(value)
                 elif what == stepping.FOR_RUNG:
-                    self._run.make(self._current[0], int(value))
+                    self._run.matrices.make(self._current[0], int(value))
                 else:
                     self._make_rows(*divmod(int(value), stepping.RUNGS))
         except HerringboneError as error:
@@ -174,7 +174,7 @@ class CorePart:
             inner=np.zeros((inside, stepping.RUNGS, held, self._sent.shown.still.size)),
             made=np.zeros((inside, stepping.RUNGS), np.int64),
         )
-        return self._run.rungs_of(h / per_step), signals, samples, per_step
+        return self._run.matrices.of(h / per_step), signals, samples, per_step
 
     def _make_rows(self, node: int, rung: int) -> None:
         """Rows of the sent outputs at a node inside, in a step of a rung around it."""

@@ -22,7 +22,7 @@ from herringbone.analysis.twin.condensed.march import (
     march_in,
 )
 from herringbone.analysis.twin.condensed.march_arrays import Arrays, Asked
-from herringbone.analysis.twin.condensed.solution import HALVINGS as SHORTEST
+from herringbone.analysis.twin.condensed.step_matrices import HALVINGS as SHORTEST
 from herringbone.analysis.twin.core_part.memory import PLACES, readers
 from herringbone.cosim.loops.calls import c_call
 from herringbone.kernels.compiling.jit import finding

@@ -10,14 +10,14 @@ import numpy as np
 from herringbone.analysis.accuracy.apart import outputs_in
 from herringbone.analysis.twin.condensed.equations import Equations, take_apart
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean, leaner, with_harmonics
-from herringbone.analysis.twin.condensed.outputs import (
+from herringbone.analysis.twin.condensed.recorded.outputs import (
     Outputs,
     affine_places,
     outputs_of_kernels,
 )
+from herringbone.analysis.twin.condensed.recorded.wanted import places_seen
 from herringbone.analysis.twin.condensed.solution import CLOSE, COARSE, Solution
 from herringbone.analysis.twin.condensed.system import Condensed, condensed
-from herringbone.analysis.twin.condensed.wanted import places_seen
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError, Variable
 from herringbone.core.caching.remembered import Remembered

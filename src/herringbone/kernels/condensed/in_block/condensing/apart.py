@@ -57,39 +57,41 @@ def _matrix_taker(form: Form, at: WorkPlaces, equations: Equations) -> Callable:
         given(b, w[at.x : at.x + n], w[at.now :], w[of.rates : of.rates + rows], z)
 
     @outside(owner)
-    def take_apart(b: np.ndarray, w: np.ndarray) -> bool:
+    def unit(b: np.ndarray, w: np.ndarray, place: int, to: int, to_own: int, width: int) -> float:
+        """Write what a unit at a place adds to rates, outputs and arguments; the latter's size."""
         dx, still = w[of.rates : of.rates + rows], w[of.rates + rows : of.rates + 2 * rows]
-        z, direct = w[at.start : at.start + arguments], 0.0
+        w[place] = 1.0
+        answer(b, w)
+        w[place] = 0.0
+        for i in range(rows):
+            w[to + i * width] = dx[i] - still[i]
+        size = 0.0
+        for k in range(arguments):
+            own = w[at.start + k] - w[at.of_channels + k * channels + channels - 1]
+            w[to_own + k * width] = own
+            size += abs(own)
+        return size
+
+    @outside(owner)
+    def take_apart(b: np.ndarray, w: np.ndarray) -> bool:
         for i in range(n):
             w[at.x + i] = 0.0
         for c in range(channels):
             w[at.now + c] = 0.0
         answer(b, w)
         for i in range(rows):
-            still[i] = dx[i]
-            w[of.of_inputs + i * channels + channels - 1] = dx[i]
+            still = w[of.rates + i]
+            w[of.rates + rows + i] = still
+            w[of.of_inputs + i * channels + channels - 1] = still
         for k in range(arguments):
-            w[at.of_channels + k * channels + channels - 1] = z[k]
+            w[at.of_channels + k * channels + channels - 1] = w[at.start + k]
+        direct = 0.0
         for c in range(channels - 1):
-            w[at.now + c] = 1.0
-            answer(b, w)
-            w[at.now + c] = 0.0
-            for i in range(rows):
-                w[of.of_inputs + i * channels + c] = dx[i] - still[i]
-            for k in range(arguments):
-                own = z[k] - w[at.of_channels + k * channels + channels - 1]
-                w[at.of_channels + k * channels + c] = own
-                if c < values:
-                    direct += abs(own)
+            own = unit(b, w, at.now + c, of.of_inputs + c, at.of_channels + c, channels)
+            if c < values:
+                direct += own
         for j in range(n):
-            w[at.x + j] = 1.0
-            answer(b, w)
-            w[at.x + j] = 0.0
-            for i in range(rows):
-                w[of.whole + i * n + j] = dx[i] - still[i]
-            for k in range(arguments):
-                own = z[k] - w[at.of_channels + k * channels + channels - 1]
-                w[of.of_states + k * n + j] = own
+            unit(b, w, at.x + j, of.whole + j, of.of_states + j, n)
         return direct == 0.0
 
     return take_apart

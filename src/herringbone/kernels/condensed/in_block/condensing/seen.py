@@ -23,12 +23,42 @@ def seen_arranger(form: Form, at: WorkPlaces, owner: str) -> Callable[[np.ndarra
         at: places in the work space.
         owner: of the kernels.
     """
-    n, channels, outputs, capacity = form.states, form.channels, form.outputs, at.capacity
-    of, part = taken_places(form, at.rungs), np.array([*form.shown.part, -1])
+    n, channels, outputs = form.states, form.channels, form.outputs
+    part = np.array([*form.shown.part, -1])
+    see, see_state = _row_writer(form, at, owner), _state_row_writer(form, at, owner)
+
+    @outside(owner)
+    def arrange_seen(w: np.ndarray) -> None:
+        w[at.showing] = 1.0
+        for k in range(outputs):
+            if w[at.bent + k] != 0.0 and part[k] < 0:
+                w[at.showing] = 0.0
+        count, modes, rotations = int(w[at.inside]), int(w[at.modes]), int(w[at.rotations])
+        size = in_lines(count + outputs)
+        for k in range((2 * modes + rotations + channels) * size):
+            w[at.seen + k] = 0.0
+        for i in range(n):
+            w[at.inside_of + i] = -1.0
+        for i in range(count):
+            state = int(w[at.states + i])
+            w[at.inside_of + state] = i
+            see_state(w, i, state, at.seen + i, size)
+        for k in range(outputs):
+            see(w, n + k, at.seen + count + k, size)
+
+    return arrange_seen
+
+
+def _row_writer(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile see(w, row, to, size): what a row over states and channels is of the others.
+
+    These are coordinates, angles and channels.
+    """
+    n, channels, capacity = form.states, form.channels, at.capacity
+    of = taken_places(form, at.rungs)
 
     @outside(owner)
     def see(w: np.ndarray, row: int, to: int, size: int) -> None:
-        """Write what a row over states and channels is of coordinates, angles and channels."""
         count, modes, rotations = int(w[at.inside]), int(w[at.modes]), int(w[at.rotations])
         over = w[of.whole + row * n : of.whole + (row + 1) * n]
         k = 0
@@ -52,9 +82,15 @@ def seen_arranger(form: Form, at: WorkPlaces, owner: str) -> Callable[[np.ndarra
             place = to + (2 * modes + rotations + c) * size
             w[place] = w[of.of_inputs + row * channels + c]
 
+    return see
+
+
+def _state_row_writer(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile see_state(w, i, state, to, size): the row of a state, the one inside i."""
+    n, capacity = form.states, at.capacity
+
     @outside(owner)
     def see_state(w: np.ndarray, i: int, state: int, to: int, size: int) -> None:
-        """Write the row of the state inside i."""
         count, modes, k = int(w[at.inside]), int(w[at.modes]), 0
         for mode in range(modes):
             w[to + mode * size] = w[at.shapes + i * count + k]
@@ -65,23 +101,4 @@ def seen_arranger(form: Form, at: WorkPlaces, owner: str) -> Callable[[np.ndarra
         for r in range(int(w[at.rotations])):
             w[to + (2 * modes + r) * size] = w[at.rigid + r * n + state]
 
-    @outside(owner)
-    def arrange_seen(w: np.ndarray) -> None:
-        w[at.showing] = 1.0
-        for k in range(outputs):
-            if w[at.bent + k] != 0.0 and part[k] < 0:
-                w[at.showing] = 0.0
-        count, modes, rotations = int(w[at.inside]), int(w[at.modes]), int(w[at.rotations])
-        size = in_lines(count + outputs)
-        for k in range((2 * modes + rotations + channels) * size):
-            w[at.seen + k] = 0.0
-        for i in range(n):
-            w[at.inside_of + i] = -1.0
-        for i in range(count):
-            state = int(w[at.states + i])
-            w[at.inside_of + state] = i
-            see_state(w, i, state, at.seen + i, size)
-        for k in range(outputs):
-            see(w, n + k, at.seen + count + k, size)
-
-    return arrange_seen
+    return see_state

@@ -7,7 +7,7 @@ import numpy as np
 
 from herringbone.analysis.twin.condensed.equations import Equations
 from herringbone.analysis.twin.condensed.modes import Modes
-from herringbone.analysis.twin.condensed.observing import Shown, call_parts
+from herringbone.analysis.twin.condensed.recorded.observing import Shown, call_parts
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.law_addresses import signals_address

@@ -12,11 +12,11 @@ import numpy as np
 from herringbone.analysis.twin.condensed.equations import laws_of
 from herringbone.analysis.twin.condensed.march_arrays import Samples
 from herringbone.analysis.twin.condensed.modes import Modes
-from herringbone.analysis.twin.condensed.observing import Shown
+from herringbone.analysis.twin.condensed.recorded.observing import Shown
+from herringbone.analysis.twin.condensed.recorded.wanted import AffineRows, Wanted, places_seen
 from herringbone.analysis.twin.condensed.rungs import coefficients, parts, powers, twice
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.condensed.system import Condensed
-from herringbone.analysis.twin.condensed.wanted import AffineRows, Wanted, places_seen
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.kernels.condensed.lines import padded
 

@@ -1,0 +1,1 @@
+"""What a run of a condensed system records, from its modal coordinates."""
