@@ -83,6 +83,10 @@ def identifier_for(text: str, taken: Container[str] = ()) -> str:
     return found
 
 
+WILD = frozenset("*?")
+"""What stands for other characters in a pattern."""
+
+
 def matches(name: str, pattern: str) -> bool:
     """True if the name of a column matches a pattern (`*`, `?`); brackets are those of arrays."""
     return fnmatchcase(name, pattern.replace("[", "[[]"))

@@ -1,9 +1,12 @@
 """Checked access to an instance: the message for each kind of bad value."""
 
 import math
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from herringbone.components.bench_controller import BENCH_CONTROLLER
 from herringbone.components.drive_motor import DRIVE_MOTOR
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.components.modal_housing import MODAL_HOUSING
@@ -109,6 +112,62 @@ def test_bad_resource_names_the_instance(tmp_path):
     gear = Instance(GEAR_MESH, "gear", resources=tmp_path)
     with pytest.raises(ResourceError, match=r"^gear: .*mesh_stiffness\.csv: the first line must"):
         gear.initialise()
+
+
+@pytest.fixture
+def counted():
+    """The controller, and the files of each time that its cycle was read."""
+    read = []
+
+    def load(block, files):
+        read.append(files)
+        BENCH_CONTROLLER.load(block, files)
+
+    return replace(BENCH_CONTROLLER, load=load), read
+
+
+def cycle(file, speed):
+    file.write_text(f"# units: time s, speed r/min, torque N.m\ntime,speed,torque\n0,{speed},5\n")
+
+
+def tables(component, file):
+    instance = Instance(component, "controller")
+    instance.set("cycle", str(file))
+    instance.initialise()
+    return instance.block[component.declaration.first_table :]
+
+
+def test_files_that_are_known_are_not_read_again(counted, tmp_path):
+    """A copy of a file is known, too; what one instance does to its tables no other one sees."""
+    component, read = counted
+    for name in ("a", "b"):
+        cycle(tmp_path / name, 1000.0)
+    first = tables(component, tmp_path / "a")
+    kept = first.copy()
+    assert kept.any()
+    first[:] = 7.0
+    np.testing.assert_array_equal(tables(component, tmp_path / "b"), kept)
+    assert len(read) == 1
+
+
+def test_a_file_that_was_changed_is_read_again(counted, tmp_path):
+    component, read = counted
+    cycle(tmp_path / "a", 1000.0)
+    before = tables(component, tmp_path / "a")
+    cycle(tmp_path / "a", 1200.0)
+    after = tables(component, tmp_path / "a")
+    assert len(read) == 2
+    assert np.count_nonzero(after != before) == 1
+    np.testing.assert_array_equal(tables(BENCH_CONTROLLER, tmp_path / "a"), after)
+
+
+def test_a_bad_file_is_refused_each_time(counted, tmp_path):
+    component, read = counted
+    (tmp_path / "a").write_text("nothing\n")
+    for _ in range(2):
+        with pytest.raises(ResourceError, match="the first line must"):
+            tables(component, tmp_path / "a")
+    assert len(read) == 2
 
 
 def test_first_not_finite(motor):

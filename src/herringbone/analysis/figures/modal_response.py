@@ -1,6 +1,7 @@
 """Motion of a housing's oscillators under the bearing forces that a run has recorded."""
 
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -127,22 +128,40 @@ def modal_velocity(housing: ModalHousing, forces: np.ndarray, step: float) -> np
     """
     from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
 
-    modal = forces @ housing.seat_shapes
     omega, zeta = 2.0 * math.pi * housing.frequency_hz, housing.damping_ratio
     damped = np.sqrt(1.0 - zeta**2)
     eigenvalues = omega * (-zeta + 1j * damped)
     x = eigenvalues * step
-    powers = CubicSpline(np.arange(len(modal)), modal).c[::-1]
+    powers = CubicSpline(np.arange(len(forces)), forces).c[::-1]
     factors = map(math.factorial, range(_CUBIC + 1))
-    driven = step * sum(
-        factor * phi * power for factor, phi, power in zip(factors, _phi(x), powers, strict=True)
+    answers = [
+        f * step * phi * housing.seat_shapes for f, phi in zip(factors, _phi(x), strict=True)
+    ]
+    rest = np.divide(
+        forces[0] @ housing.seat_shapes, omega**2, out=np.zeros_like(omega), where=omega > 0.0
     )
-    rest = np.divide(modal[0], omega**2, out=np.zeros_like(omega), where=omega > 0.0)
-    z = np.vstack([-np.conj(eigenvalues) * rest, driven])
-    decay = np.exp(x)
-    for n in range(1, len(z)):
-        z[n] += decay * z[n - 1]
+    z = np.empty((len(forces), len(omega)), dtype=complex)
+    z[0] = -np.conj(eigenvalues) * rest
+    np.matmul(np.hstack(powers), np.vstack(answers).view(float), out=z[1:].view(float))
+    _decay(z, np.exp(x))
     return z.real - zeta / damped * z.imag
+
+
+def _decay(z: np.ndarray, decay: np.ndarray) -> None:
+    """Add to each row of z (n, k) what is left of the one before it: decay (k,) times it.
+
+    Rows are taken in pieces, all pieces at once, and then what each piece leaves to the next one.
+    """
+    length = math.isqrt(len(z))
+    whole = len(z) // length * length
+    pieces = z[:whole].reshape(-1, length, z.shape[1])
+    for n in range(1, length):
+        pieces[:, n] += decay * pieces[:, n - 1]
+    left = decay ** np.arange(1, length + 1)[:, None]
+    for piece, after in pairwise(pieces):
+        after += left * piece[-1]  # noqa: PLW2901 (of z)
+    for n in range(whole, len(z)):
+        z[n] += decay * z[n - 1]
 
 
 def _phi(x: np.ndarray) -> list[np.ndarray]:

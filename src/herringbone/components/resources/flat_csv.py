@@ -8,15 +8,13 @@ left,56.306,0.0,8.22e8
 import re
 from collections.abc import Mapping
 from itertools import takewhile
-from pathlib import Path
 
 import numpy as np
 
 from herringbone.core import ResourceError
-from herringbone.core.caching.remembered import Remembered, content_key
-from herringbone.core.places.files import is_file
+from herringbone.core.caching.remembered import Remembered
 from herringbone.core.reading.numbers import number
-from herringbone.core.reading.texts import LARGEST_TEXT, AnyPath, lines_of, read_text
+from herringbone.core.reading.texts import AnyPath, lines_of, read_text, text_key
 
 _Table = tuple[dict[str, np.ndarray], dict[str, str]]
 _tables: Remembered[_Table] = Remembered(64)
@@ -71,19 +69,12 @@ def read_flat_csv(
     Raises:
         ResourceError: not readable, wrong unit, missing column, or a value that is not finite.
     """
-    key = _content(file)
+    key = text_key(file)
     if not key:
         return _read(file, texts, numbers, more, section)
     asked = key, texts, tuple(numbers.items()), more, section
     columns, units = _tables(asked, lambda: _read(file, texts, numbers, more, section))
     return {name: values.copy() for name, values in columns.items()}, dict(units)
-
-
-def _content(file: AnyPath) -> str:
-    """What tells a file's content from others; "" if it is not known, or is refused."""
-    if not isinstance(file, Path) or not is_file(file) or file.stat().st_size > LARGEST_TEXT:
-        return ""
-    return content_key(file)
 
 
 def _section(file: AnyPath, section: str) -> tuple[int, list[str]]:
@@ -149,7 +140,7 @@ def read_header(file: AnyPath, name: str, count: int, section: str = "") -> np.n
     Raises:
         ResourceError: it has not that many finite numbers.
     """
-    key = _content(file)
+    key = text_key(file)
     if not (key and count):
         return _read_header(file, name, count, section)
     asked = key, name, count, section

@@ -47,7 +47,7 @@ class Refusal:
         return ResourceError(f"{file}{self.format % tuple(report[:numbers])}")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ResourceLoader:
     """Reads a component's resource files into the tables of a block.
 

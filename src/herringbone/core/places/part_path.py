@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import Self
 
 from herringbone.core.errors import ParameterError, StructureError
-from herringbone.core.names import check_path, matches_any, meant, shown
+from herringbone.core.names import WILD, check_path, matches_any, meant, shown
 
 
 class PartPath(str):
@@ -128,12 +128,30 @@ def find_columns(
         patterns: of names.
     """
     known = tuple(parts)
-    called = {name: endings(known, name) for name in columns}
-    found = {}
-    for pattern in patterns:
-        by_parts = [name for name, own in called.items() if matches_any(own, [pattern])]
-        found[pattern] = by_parts or [n for n in columns if matches_any(_shortened(n), [pattern])]
-    return found
+    by_parts = _Called({name: endings(known, name) for name in columns})
+    by_endings = _Called({name: _shortened(name) for name in columns})
+    return {p: by_parts.meant(p) or by_endings.meant(p) for p in patterns}
+
+
+class _Called:
+    """Columns by the names that they may be called.
+
+    Args:
+        names: of each column.
+    """
+
+    def __init__(self, names: Mapping[str, Sequence[str]]) -> None:
+        self._names = names
+        self._columns: dict[str, list[str]] = {}
+        for column, own in names.items():
+            for name in own:
+                self._columns.setdefault(name, []).append(column)
+
+    def meant(self, pattern: str) -> list[str]:
+        """Columns of which a name matches a pattern, in their order."""
+        if not WILD.intersection(pattern):
+            return list(self._columns.get(pattern, ()))
+        return [column for column, own in self._names.items() if matches_any(own, [pattern])]
 
 
 def _shortened(column: str) -> tuple[str, ...]:

@@ -6,7 +6,9 @@ import zlib
 from pathlib import Path
 from typing import Final
 
+from herringbone.core.caching.remembered import content_key
 from herringbone.core.errors import HerringboneError, ResourceError, reason
+from herringbone.core.places.files import is_file
 from herringbone.core.places.noted import note
 
 AnyPath = Path | zipfile.Path
@@ -91,6 +93,13 @@ def read_text(
     if "\0" in text:
         raise error(f"cannot read {file}: it is no UTF-8 text (it has a zero byte)")
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def text_key(file: AnyPath) -> str:
+    """What tells a text's content from others; "" if it is not known, or is refused."""
+    if not isinstance(file, Path) or not is_file(file) or file.stat().st_size > LARGEST_TEXT:
+        return ""
+    return content_key(file)
 
 
 def lines_of(text: str) -> list[str]:

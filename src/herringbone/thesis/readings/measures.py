@@ -28,13 +28,17 @@ def measures(motion: Motion) -> dict[tuple[str, str, str], float]:
     `A`, `B`, `C`; and, with the kind "mean", secant stiffness `left.stiffness`, `right.stiffness`.
     """
     found: dict[tuple[str, str, str], float] = {}
-    places = _places(motion)
-    for what, signals in _groups(motion).items():
-        directions = _directions(what, len(signals))
-        settled = _level_and_swing(signals[:, None, :], directions)
-        published = settled if places is None else _level_and_swing(signals[:, places], directions)
-        for evaluation, figures in zip(EVALUATIONS, (settled, published), strict=True):
-            found[what, LEVEL, evaluation], found[what, SWING, evaluation] = figures
+    groups, places = _groups(motion), _places(motion)
+    signals = np.array([signal for own in groups.values() for signal in own])
+    ends = np.cumsum([len(own) for own in groups.values()])
+    settled = _squares_and_swings(signals[:, None, :])
+    published = settled if places is None else _squares_and_swings(signals[:, places])
+    for evaluation, (squares, swings) in zip(EVALUATIONS, (settled, published), strict=True):
+        for (what, own), end in zip(groups.items(), ends, strict=True):
+            here = slice(end - len(own), end)
+            square = squares[here].sum() / _directions(what, len(own))
+            found[what, LEVEL, evaluation] = math.sqrt(square)
+            found[what, SWING, evaluation] = math.sqrt(np.mean(swings[here] ** 2))
     for side in _SIDES:
         force, deflection = (
             motion.signals[f"{GEAR}.mesh_{side}.{q}"] for q in ("force", "deflection")
@@ -46,8 +50,8 @@ def measures(motion: Motion) -> dict[tuple[str, str, str], float]:
     return found
 
 
-def _groups(motion: Motion) -> dict[str, np.ndarray]:
-    """Signals (signals, n) by what they tell."""
+def _groups(motion: Motion) -> dict[str, list[np.ndarray]]:
+    """Signals (n,) by what they tell."""
     s = motion.signals
     found: dict[str, list[np.ndarray]] = {}
     for gear in GEARS:
@@ -60,7 +64,7 @@ def _groups(motion: Motion) -> dict[str, np.ndarray]:
         found[f"{gear}.seat_axial"] = [s[h, "z"] for h in halves]
     for sensor in ("A", "B", "C"):
         found[sensor] = [s[sensor, "z"]]
-    return {what: np.array(rows) for what, rows in found.items()}
+    return found
 
 
 def _directions(what: str, signals: int) -> int:
@@ -68,12 +72,15 @@ def _directions(what: str, signals: int) -> int:
     return signals // 2 if what.endswith("seat_radial") else signals
 
 
-def _level_and_swing(pieces: np.ndarray, directions: int) -> tuple[float, float]:
-    """Of signals (signals, pieces, n) that are cut into what is evaluated at once."""
+def _squares_and_swings(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Mean squares and swings (signals,) of the alternating part of each piece, over the pieces.
+
+    Args:
+        pieces: signals (signals, pieces, n), cut into what is evaluated at once.
+    """
     off = pieces - pieces.mean(axis=-1, keepdims=True)
-    squares = np.sum(np.mean(np.square(off), axis=(1, 2))) / directions
-    swing = 0.5 * np.ptp(off, axis=-1).mean(axis=-1)
-    return float(np.sqrt(squares)), float(np.sqrt(np.mean(swing**2)))
+    squares = np.einsum("spn,spn->s", off, off) / off[0].size
+    return squares, 0.5 * np.ptp(off, axis=-1).mean(axis=-1)
 
 
 def _places(motion: Motion) -> np.ndarray | None:

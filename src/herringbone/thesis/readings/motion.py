@@ -149,6 +149,7 @@ def _of_run(reading: Reading, point: Mapping[str, float], values: Mapping[str, f
         record_step=_STEP,
         values=own,
         gear=reading.gear(),
+        record=(*COLUMNS, *SEATS),
     )
     data, known = result.data, result.data.columns
     count = round(turn / _STEP)

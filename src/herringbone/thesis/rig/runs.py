@@ -1,6 +1,6 @@
 """Runs of the rig that entries of this room have in common."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -63,11 +63,12 @@ def fused_or_coupled(
     record_step: float,
     values: Mapping[str, float | str | Path],
     gear: GearJob | None = None,
+    record: Sequence[str] = (),
 ) -> Result:
     """A run from equilibrium without coupling, or with it where that does not come to its end.
 
     Where large deviations part teeth at little load, a fused run may stop; equal steps of the
-    coupling go on whatever the teeth do.
+    coupling go on whatever the teeth do; these record all outputs.
 
     Raises:
         HerringboneError: neither comes to its end.
@@ -82,6 +83,7 @@ def fused_or_coupled(
             record_step=record_step,
             gear=gear,
             values=values,
+            record=record if fuse else (),
         )
         if result.outcome.reached_end and not result.outcome.unstable:
             return result
