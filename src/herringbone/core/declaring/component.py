@@ -79,8 +79,8 @@ class Component:
         declaration: variables and layout.
         kernels: compiled functions.
         equations: the docstring of the component's module, Markdown.
-        load: reads the resource files (by String parameter) into the tables of a block;
-            raises ResourceError.
+        load: reads the resource files (by String parameter) into the tables of a block, which
+            depend on nothing else: what it made once is copied; raises ResourceError.
         verify: checks what was loaded against the parameters of a block, at the end of
             initialisation; raises ResourceError.
         start: makes a block's states from its start parameters, at the end of initialisation;
