@@ -1,7 +1,8 @@
 """li on the test rig, in-process: accuracy against the twin, and the same bits from FMUs.
 
-What is expected: coupling.md 13.1, 13.4. With a smooth stiffness table 0.1 % is reached at 109 us
-(li 3) and 153 us (li 4), in separation at 104 us (li 3); 50 us suffices at all speeds.
+A prototype with other code has shown what is expected: with a smooth stiffness table 0.1 % is
+reached at 109 us (li 3) and 153 us (li 4), in separation at 104 us (li 3); 50 us suffices at all
+speeds.
 """
 
 from functools import cache
