@@ -12,6 +12,7 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.declaring.roles import Role
+from herringbone.core.declaring.units import RAD_S
 from herringbone.running.loading import load_system
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
@@ -22,7 +23,6 @@ _RUN_OUT = "symmetry_deviation"
 _COARSE, _FINE = 1e-3, 1e-4
 _SLOWEST, _FASTEST = 500.0, 3000.0
 """Speeds of the sweep [r/min]."""
-_R_MIN = math.pi / 30.0
 
 
 class Cost(NamedTuple):
@@ -77,7 +77,7 @@ def _point(solver: SteadySolver) -> Callable[[], list[SteadyState]]:
 def _sweep(solver: SteadySolver, count: int) -> Callable[[], list[SteadyState]]:
     def solved() -> list[SteadyState]:
         found: list[SteadyState] = []
-        for speed in np.linspace(_SLOWEST, _FASTEST, count) * _R_MIN:
+        for speed in np.linspace(_SLOWEST, _FASTEST, count) * RAD_S:
             found.append(solver.solve(Point(speed=speed), found[-1] if found else None))
         return found
 

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 from herringbone.core import ParameterError
+from herringbone.core.declaring.units import R_MIN
 
 _SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
-_R_MIN = 30.0 / math.pi
-"""r/min in 1 rad/s."""
 _WHOLE = 2.0**53
 """Up to here doubles hold all whole numbers."""
 
@@ -189,7 +188,7 @@ class OperatingPoint(TypedDict):
 
 def operating_point(options: argparse.Namespace) -> OperatingPoint:
     """What `add_operating_point` declares, as whatever takes a system takes it."""
-    speed = None if options.speed is None else options.speed / _R_MIN
+    speed = None if options.speed is None else options.speed / R_MIN
     return OperatingPoint(speed=speed, torque=options.torque)
 
 

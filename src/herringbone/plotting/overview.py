@@ -1,6 +1,5 @@
 """One picture that shows whether a run is sound: torque and speed, forces, velocities, spectrum."""
 
-import math
 from collections.abc import Callable
 
 from matplotlib.axes import Axes
@@ -8,6 +7,7 @@ from matplotlib.figure import Figure
 
 from herringbone.analysis.asked import by_half, column_of, shaft_torques
 from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.declaring.units import R_MIN
 from herringbone.plotting.columns import generic_overview
 from herringbone.plotting.panels import (
     close_up,
@@ -19,7 +19,6 @@ from herringbone.plotting.panels import (
 from herringbone.plotting.style import COLOURS, draw_line, legend, new_figure, styled
 from herringbone.result.result import TIME, Result
 
-_R_MIN = 30.0 / math.pi
 _ABOVE_ORDERS = 0.06
 Panel = Callable[[Axes], None]
 
@@ -93,7 +92,7 @@ def _torque_and_speed(axes: Axes, result: Result) -> None:
         return
     right = axes.twinx()
     data = result.over_time
-    draw_line(right, data[TIME].to_numpy(), data[speed].to_numpy() * _R_MIN, color=COLOURS[2])
+    draw_line(right, data[TIME].to_numpy(), data[speed].to_numpy() * R_MIN, color=COLOURS[2])
     right.set_ylabel("pinion speed [r/min]", color=COLOURS[2])
     right.tick_params(axis="y", colors=COLOURS[2])
     right.spines["right"].set_visible(True)

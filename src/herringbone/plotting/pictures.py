@@ -1,6 +1,5 @@
 """The standard pictures of a run: bearing forces, seat velocities, spectra, torques and speeds."""
 
-import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -17,6 +16,7 @@ from herringbone.analysis.figures.standstill import has_pictures
 from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
+from herringbone.core.declaring.units import R_MIN
 from herringbone.plotting.overview import overview
 from herringbone.plotting.panels import (
     DECADES,
@@ -43,7 +43,6 @@ from herringbone.result.result import Result
 DIRECTION = {"x": "x (toward the wheel)", "y": "y", "z": "z (axial)"}
 _FORCE_DIRECTION = {"y": "y (line of action)", "z": "z (axial)"}
 _MM = 1e3
-_R_MIN = 30.0 / math.pi
 _SCALES = {"force": (1.0, "N"), "velocity": (_MM, "mm/s")}
 """Factor of SI values and unit, of what is shown over time."""
 
@@ -181,7 +180,7 @@ def torques(result: Result) -> Figure:
     panels = figure.subplots(2, 2, sharex=True)
     for column, (gear, (torque, speed)) in enumerate(sides.items()):
         time_panel(panels[0][column], result, torque, "torque", unit="N m")
-        time_panel(panels[1][column], result, speed, "speed", factor=_R_MIN, unit="r/min")
+        time_panel(panels[1][column], result, speed, "speed", factor=R_MIN, unit="r/min")
         panels[0][column].set_title(f"{gear} side")
         for axes in panels[:, column]:
             axes.set_visible(bool(axes.lines))

@@ -18,12 +18,12 @@ from herringbone.analysis.figures.runup import (
     waterfall,
 )
 from herringbone.core import ParameterError
+from herringbone.core.declaring.units import R_MIN
 from herringbone.plotting.maps import decibels_map, order_rays
 from herringbone.plotting.panels import headline
 from herringbone.plotting.style import legend, new_figure, scaled_unit, styled
 from herringbone.result.result import Result
 
-_R_MIN = 30.0 / math.pi
 _CHANNELS = "bearing_force", "seat_velocity"
 
 
@@ -93,7 +93,7 @@ def _waterfall(
     wanted = float(found.order[-1] * found.speed.max()) if highest is None else highest
     shown = spectra.frequency <= min(wanted, nyquist)
     factor, unit = scaled_unit(result.units[column], float(spectra.amplitude.max()))
-    speed = spectra.speed * _R_MIN
+    speed = spectra.speed * R_MIN
     ordered = np.argsort(speed, kind="stable")
     decibels_map(
         axes,

@@ -7,13 +7,13 @@ from typing import Any
 
 from herringbone.analysis.leaner.form import Form
 from herringbone.core import ParameterError
+from herringbone.core.declaring.units import R_MIN
 from herringbone.scenes.asking import Ask, Model, Motion, Operating, Range
 
 ASKING = {"ask", "operating", "model"}
 """Keys of a scene that are read here."""
 _PARTS = ("one_way", "frozen", "linear")
 """Of a model: what names parts."""
-_R_MIN = 30.0 / math.pi
 _ENDS = 2
 
 
@@ -76,7 +76,7 @@ def _operating(data: Any) -> Operating:  # noqa: ANN401
         raise ParameterError(f"operating: motion = {motion!r}; it must be one of {kinds}")
     speed, torque = _range(data, "operating", "speed"), _range(data, "operating", "torque")
     if speed is not None:
-        speed = (speed[0] / _R_MIN, speed[1] / _R_MIN)
+        speed = (speed[0] / R_MIN, speed[1] / R_MIN)
     if motion == Motion.TRANSIENT and (speed or torque):
         raise ParameterError(
             "operating: speed, torque: a transient has those of its cycle; set what commands them"
@@ -92,7 +92,7 @@ def _model(data: Any) -> Model:  # noqa: ANN401
         _texts(data.get("hold", []), "model: hold"),
         _texts(data.get("one_way", []), "model: one_way"),
         error,
-        None if speed is None else (speed[0] / _R_MIN, speed[1] / _R_MIN),
+        None if speed is None else (speed[0] / R_MIN, speed[1] / R_MIN),
         _range(data, "model", "torque"),
         _texts(data.get("frozen", []), "model: frozen"),
         _texts(data.get("linear", []), "model: linear"),
@@ -176,5 +176,5 @@ def _listed(names: tuple[str, ...]) -> str:
 def _ranges(ends: Mapping[str, Range | None]) -> Iterator[str]:
     for key, given in ends.items():
         if given is not None:
-            low, high = (value * (_R_MIN if key == "speed" else 1.0) for value in given)
+            low, high = (value * (R_MIN if key == "speed" else 1.0) for value in given)
             yield f"{key} = [{low:.12g}, {high:.12g}]"

@@ -1,6 +1,5 @@
 """The thesis' model on rigid ground: in the window that the thesis looked at, and settled."""
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
@@ -10,6 +9,7 @@ from herringbone.analysis.modes.natural_modes import NaturalModes
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import HerringboneError
+from herringbone.core.declaring.units import RAD_S
 from herringbone.running.api import run
 from herringbone.running.operating.modes import modes
 from herringbone.running.operating.steady import prepared_solver
@@ -41,7 +41,6 @@ SAMPLE = 40e-6
 """Between shown values [s]."""
 _ANGLE = f"{names.GEAR}.pinion.phi"
 _LEAST = 1e-12
-_SPEED_IN = math.pi / 30.0
 _TOLERANCE = 1e-4
 """Of groups of channels: motions are told that are a hundredth of the largest one of their group,
 and of which a tolerance of 1e-3 is a fifth."""
@@ -89,7 +88,7 @@ def settled(
     )
     near = None
     for speed in speeds:
-        near = solver.solve(Point(speed=speed * _SPEED_IN), near)
+        near = solver.solve(Point(speed=speed * RAD_S), near)
         if not near.converged:
             raise HerringboneError(f"no steady state at {speed:g} r/min, {torque:g} N m")
         yield near
@@ -127,7 +126,7 @@ def window(
     """
     share = torque / TORQUE
     values = {
-        f"{names.GEAR}.der(angle)": speed * _SPEED_IN,
+        f"{names.GEAR}.der(angle)": speed * RAD_S,
         names.SYMMETRY_DEVIATION: deviation,
         "pinion_torque.torque_factor": share,
         "wheel_torque.torque_factor": -share,

@@ -13,7 +13,7 @@ from herringbone.core import Instance
 from herringbone.core.places.paths import component_folder
 
 MESH_STIFFNESS = 2.011e9
-"""Both halves together [N/m]; physics.md 2.4."""
+"""Both halves together [N/m], as in the thesis."""
 RADIAL_STIFFNESS = 6.34e8
 AXIAL_STIFFNESS = 2.03e8
 HALF_MASS = {"pinion": 6.500, "wheel": 47.739}

@@ -49,7 +49,7 @@ def test_a_floating_pinion_shares_load_equally(still):
 
 
 def test_a_held_pinion_shares_it_unequally(still):
-    """physics.md, 1.6: springs in series take the deviation up; the loaded side is stiffer."""
+    """Springs in series take the deviation up; the loaded side is stiffer."""
     found = measures(Moving(still.but(restraint=1e8)).at(10e-6, 200.0, SPEED))
     left, right = (found[f"{s}.load", "mean", SETTLED] for s in ("left", "right"))
     assert left / (left + right) == pytest.approx(0.653, abs=0.02)

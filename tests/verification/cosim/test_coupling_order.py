@@ -144,7 +144,7 @@ def test_order_0_undamped_grows_at_every_step_size(p):
 
 
 CASES = [
-    # order, schedule, zeta, limit of h w (coupling.md section 2), its resolution
+    # order, schedule, zeta, limit of h w as a prototype with other code found it, its resolution
     (0, "bodies_first", 0.02, 0.08, 1.1e-3),
     (0, "bodies_first", 0.1, 0.40, 1.1e-3),
     (0, PARALLEL, 0.02, 4.0 / 3.0 * 0.02, 1.1e-3),
@@ -159,7 +159,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("order", "schedule", "zeta", "known", "resolution"), CASES)
-def test_predicted_limit_is_the_published_one(order, schedule, zeta, known, resolution):
+def test_predicted_limit_is_that_of_other_code(order, schedule, zeta, known, resolution):
     assert limit(zeta, order, schedule == PARALLEL) == pytest.approx(known, abs=resolution)
 
 

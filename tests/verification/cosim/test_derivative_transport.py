@@ -5,20 +5,19 @@ gauss_seidel differ by rounding only. The iterated algorithms also take outputs 
 which are Hermite cubics then: their order is 4 at most. Inputs up to order q alone leave 2 q + 2.
 """
 
+from contextlib import closing
+
 import numpy as np
 import pytest
 from support.derivatives import DerivativeMass, without_nodes
 from support.parts.fakes import ERROR
 from support.parts.running import columns, open_in_process, slope
 from support.parts.two_masses import MOTION, TwoMass
-from test_li_on_the_rig import BEARING, FINE, SEAT, rig
+from support.rig.beside_twin import BesideTwin
 
-from herringbone.analysis.accuracy.error import relative_error
-from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import FmuError, OutcomeKind
 from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
 from herringbone.cosim.fmu.opening import open_fmu
-from herringbone.cosim.simulation import make_grid, simulate
 
 T_END = 4.0
 SHORT, LONG = (0.04, 0.02, 0.01, 0.005), (0.2, 0.1, 0.05)
@@ -183,34 +182,23 @@ def housings(native_fmus, tmp_path_factory):
     }
 
 
-class Rig:
-    """The scene loaded with a housing from a file, and its twin."""
-
-    T_END = 0.01
+class Rig(BesideTwin):
+    """The scene loaded with a housing from a file, beside its twin."""
 
     def __init__(self, housings):
-        self.system, self.housings = rig("loaded"), housings
-        times = np.arange(round(self.T_END / FINE) + 1) * FINE
-        self.twin = Twin(self.system).solve(times, [*BEARING, *SEAT])
+        super().__init__("loaded", 0.01)
+        self.housings = housings
 
-    def run(self, transport, algorithm, h):
+    def with_housing(self, transport, algorithm, h):
         """Errors of bearing forces and seat velocities, and the housing's notes."""
         parts = open_in_process(self.system)
         at = [p.name for p in parts].index(HOUSING)
         parts[at] = housing = open_fmu(HOUSING, self.housings[transport])
-        try:
+        with closing(housing):
             for name, value in self.system.parts[at].values.items():
                 housing.set(name, value)
-            recording = simulate(self.system, parts, algorithm, make_grid(self.T_END, h, h))
-        finally:
-            housing.close()
-        assert recording.outcome.completed
-        twin = self.twin[:: round(h / FINE)]
-        error = [
-            relative_error(columns(recording, BEARING), twin[:, : len(BEARING)]),
-            relative_error(columns(recording, SEAT), twin[:, len(BEARING) :]),
-        ]
-        return np.array(error), [n for n in recording.notes if n.startswith(HOUSING)]
+            error, recording = self.run(algorithm, h, parts)
+        return error, [n for n in recording.notes if n.startswith(HOUSING)]
 
 
 @pytest.fixture(scope="module")
@@ -223,7 +211,9 @@ def test_li_on_the_rig(loaded):
     """Bearing forces and seat velocities: 1e-5, 2e-5 with nodes; 9e-5, 1.2e-4 with derivatives;
     3.5e-3, 3.7e-2 held. The step is a fifth of the shortest period of the housing's residual modes.
     """
-    found = {t: loaded.run(t, LI(degree=3), 40e-6)[0] for t in ("nodes", "derivatives", "hold")}
+    found = {
+        t: loaded.with_housing(t, LI(degree=3), 40e-6)[0] for t in ("nodes", "derivatives", "hold")
+    }
     assert (found["derivatives"] <= found["hold"] / 10.0).all()
     assert (found["derivatives"] <= 5e-4).all()
     assert (found["nodes"] <= found["derivatives"]).all()
@@ -233,13 +223,13 @@ def test_li_on_the_rig(loaded):
 def test_jacobi_on_the_rig(loaded, q):
     """The same polynomial; what differs is rounding, which 1000 steps of the bearings amplify."""
     nodes, derivatives = (
-        loaded.run(t, Jacobi(order=q), 10e-6)[0] for t in ("nodes", "derivatives")
+        loaded.with_housing(t, Jacobi(order=q), 10e-6)[0] for t in ("nodes", "derivatives")
     )
     assert derivatives == pytest.approx(nodes, rel=1e-6)
 
 
 def test_the_housing_s_transport_is_reported(loaded):
-    notes = {t: loaded.run(t, LI(degree=3), 40e-6)[1] for t in ("derivatives", "hold")}
+    notes = {t: loaded.with_housing(t, LI(degree=3), 40e-6)[1] for t in ("derivatives", "hold")}
     assert notes["derivatives"] == [
         f"{HOUSING} has no signal nodes; its inputs go as FMI derivatives up to order 3; its "
         "outputs are cubics through values and FMI derivatives; the coupling keeps order 4 in the "
@@ -256,8 +246,8 @@ def test_fmu_that_refuses_what_it_declares(loaded, python_fmus, tmp_path):
         canInterpolateInputs="true",
         maxOutputDerivativeOrder="1",
     )
-    error, (note,) = loaded.run("liar", LI(degree=3), 40e-6)
-    held, _ = loaded.run("hold", LI(degree=3), 40e-6)
+    error, (note,) = loaded.with_housing("liar", LI(degree=3), 40e-6)
+    held, _ = loaded.with_housing("hold", LI(degree=3), 40e-6)
     assert "it declares input derivatives of order 3 but refuses them" in note
     assert note.endswith(
         "its inputs are held over a step; its outputs are interpolated through past values; the "

@@ -1,66 +1,34 @@
 """li on the test rig, in-process: accuracy against the twin, and the same bits from FMUs.
 
-What is expected: coupling.md 13.1, 13.4. With a smooth stiffness table 0.1 % is reached at 109 us
-(li 3) and 153 us (li 4), in separation at 104 us (li 3); 50 us suffices at all speeds.
+A prototype with other code has shown what is expected: with a smooth stiffness table 0.1 % is
+reached at 109 us (li 3) and 153 us (li 4), in separation at 104 us (li 3); 50 us suffices at all
+speeds.
 """
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pandas as pd
 import pytest
-from support.parts.running import columns, open_in_process, run_fmus_and_in_process
+from support.parts.running import columns, run_fmus_and_in_process
+from support.rig.beside_twin import BesideTwin, rig
 
 import herringbone as hb
-from herringbone.analysis.accuracy.error import relative_error
-from herringbone.analysis.twin.monolithic import Twin
-from herringbone.components.ports import HALVES
 from herringbone.cosim.algorithms import LI, Jacobi
-from herringbone.cosim.simulation import make_grid, simulate
-from herringbone.cosim.structure.system_file import find_system, read_system
-from herringbone.running.start import started
-from herringbone.scenes import find_scene, read_scene
+from herringbone.cosim.simulation import make_grid
 
 T_END = 0.02
-FINE = 10e-6
-"""Grid of the twin; all steps are whole numbers of it."""
-BEARING = [f"gearbox.bearing_supports.shaft.{half}.f_{axis}" for half in HALVES for axis in "yz"]
-SEAT = [f"gearbox.modal_housing.{half}.v_{axis}" for half in HALVES for axis in "xyz"]
 PROMISE = 1e-3
 FLOOR = 5e-5
 """Error that contact events inside micro steps of 2.5 us leave in the scene separation."""
 
 
-def rig(name, **values):
-    scene = read_scene(find_scene(find_system("test_rig"), name))
-    scene = replace(scene, values={**scene.values, **values})
-    return started(read_system("test_rig"), scene)[0]
-
-
-class Rig:
-    """A scene and its twin's answer, solved once."""
+class Rig(BesideTwin):
+    """A scene beside its twin, in-process; each error is found once."""
 
     def __init__(self, name, **values):
-        self.system = rig(name, **values)
-        times = np.arange(round(T_END / FINE) + 1) * FINE
-        self.twin = Twin(self.system).solve(times, [*BEARING, *SEAT])
-        self.error = cache(self._error)
-
-    def _error(self, algorithm, h):
-        """Errors of bearing forces and seat velocities."""
-        recording = simulate(
-            self.system, open_in_process(self.system), algorithm, make_grid(T_END, h, h)
-        )
-        assert recording.outcome.completed
-        assert recording.step == pytest.approx(h, rel=1e-12)
-        twin = self.twin[:: round(h / FINE)]
-        return np.array(
-            [
-                relative_error(columns(recording, BEARING), twin[:, : len(BEARING)]),
-                relative_error(columns(recording, SEAT), twin[:, len(BEARING) :]),
-            ]
-        )
+        super().__init__(name, T_END, **values)
+        self.error = cache(lambda algorithm, h: self.run(algorithm, h)[0])
 
 
 @pytest.fixture(scope="module")

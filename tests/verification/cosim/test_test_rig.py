@@ -106,7 +106,7 @@ def test_parallel_schedule_is_useless_at_the_default_step():
 
 
 def test_limit_of_quadratic_extrapolation():
-    """Predicted 43.9 us (closed mesh), simulated 43.9 (coupling.md 13.1), 8 bonds there."""
+    """Predicted 43.9 us (closed mesh), simulated 43.9 by a prototype with other code."""
 
     def amplitude(h):
         recording = run_in_process(rig(), Jacobi(order=2), h, 0.15)

@@ -13,6 +13,7 @@ from herringbone.analysis.figures.hunting import longest_hunt
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.spectra import hann_weight
 from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.declaring.units import R_MIN
 from herringbone.result.result import TIME, Result
 
 _MUCH = 0.05
@@ -20,7 +21,6 @@ _FEWEST_ROWS = 80
 _FEWEST_PERIODS = 8.0
 _ROUNDING = 1e-9
 _WITHOUT_UNIT = {"", "1"}
-_R_MIN = 30.0 / np.pi
 _GROWN = 4.0
 """Growth in a quarter over the rms of what is beside it, above which an output turns: that of a
 vibration of its own, which does not grow, is at most 3 where the quarter has a period or more."""
@@ -78,7 +78,7 @@ def moving_speed(result: Result) -> str:
         return ""
     if steady_part(result).steady:
         return ""
-    later = speed[speed.size // 2 :] * _R_MIN
+    later = speed[speed.size // 2 :] * R_MIN
     return (
         f"the pinion's speed varies from {later.min():.5g} to {later.max():.5g} r/min in the "
         "second half of the run"

@@ -14,6 +14,7 @@ from herringbone.analysis.flange.bench import Bench
 from herringbone.analysis.flange.motions import burst, constant, turn
 from herringbone.analysis.flange.variables import Flange
 from herringbone.analysis.flange.work import CYCLES, periods
+from herringbone.core.declaring.units import R_MIN
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.trial import Refused
 
@@ -96,7 +97,7 @@ def _shown(r: float, lag: float, rest: float) -> str:
 
 def hint(factor: float) -> str:
     """Which units a factor of a speed tells of."""
-    known = {30.0 / np.pi: "r/min?", 0.5 / np.pi: "turns?", np.pi / 180.0: "degrees?"}
+    known = {R_MIN: "r/min?", 0.5 / np.pi: "turns?", np.pi / 180.0: "degrees?"}
     close = (unit for size, unit in known.items() if abs(abs(factor) / size - 1.0) < HINT)
     return next((f" ({unit})" for unit in close), "")
 

@@ -16,9 +16,6 @@ from herringbone.core.places.wrong_column import meant_columns
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-R_MIN = 30.0 / np.pi
-"""r/min of 1 rad/s."""
-
 
 class PeriodicMotion(Facts):
     """Outputs of a periodic motion.

@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.analysis.steady.of_runs.settled import SettledState
-from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
+from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
 from herringbone.analysis.steady.state import SteadyState
+from herringbone.core.declaring.units import R_MIN
 from herringbone.core.places.files import replacing
 from herringbone.result.tables import pieces_of, write_csv
 

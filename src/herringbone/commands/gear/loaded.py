@@ -7,12 +7,11 @@ from dataclasses import asdict
 import numpy as np
 
 from herringbone.core.declaring.roles import SIDES
+from herringbone.core.declaring.units import RAD_S
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.load.deviating_teeth import DeviatingLoad
 from herringbone.gears.load.figures import Loaded
 from herringbone.gears.load.flank_load import FlankLoad, axial_position
-
-_RPM = math.pi / 30.0
 
 
 def loaded_rows(loaded: Loaded) -> list[tuple[str, str]]:
@@ -75,14 +74,14 @@ def _symmetry(loaded: Loaded) -> str:
 def _factor_rows(loaded: Loaded) -> list[tuple[str, str]]:
     factor, conditions = loaded.factor, loaded.conditions
     heading = (
-        f"Dynamic factor (ISO 6336-1 B) at {conditions.speed / _RPM:g} r/min, "
+        f"Dynamic factor (ISO 6336-1 B) at {conditions.speed / RAD_S:g} r/min, "
         f"class {conditions.grade}, K_A {conditions.load_factor:g}"
     )
     if isinstance(factor, str):
         return [(heading, ""), ("not known", factor)]
     return [
         (heading, ""),
-        ("resonance speed n_E1", f"{factor.resonance_speed / _RPM:.0f} r/min"),
+        ("resonance speed n_E1", f"{factor.resonance_speed / RAD_S:.0f} r/min"),
         ("resonance ratio N", f"{factor.resonance_ratio:.4f}, {factor.speed_range}"),
         ("K_v", f"{factor.factor:.4f}"),
     ]

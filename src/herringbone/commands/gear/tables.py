@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from herringbone.commands.gear.loaded import loaded_json, loaded_rows
+from herringbone.core.declaring.units import RAD_S
 from herringbone.gears.geometry.corner_contact import Impact
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.job import GearJob
@@ -14,7 +15,6 @@ from herringbone.gears.pair_values import USUAL_BACKLASH, backlash_of
 from herringbone.gears.stiffness.calibration import FULL_SPECIFIC_LOAD
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 
-_RPM = math.pi / 30.0
 _PULSE = 0.02
 """Share of the impact force that a helical tooth's corner may have: one of some fifty slices."""
 _HARMONICS = 3
@@ -200,7 +200,7 @@ def _impact_rows(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> list
     speed = loaded.conditions.speed
     impact = _impact(job, stiffness, speed)
     return [
-        (f"Meshing impact at this load and {speed / _RPM:g} r/min, without relief", ""),
+        (f"Meshing impact at this load and {speed / RAD_S:g} r/min, without relief", ""),
         ("contact begins early by", f"{1e3 * impact.early_contact:.3f} mm"),
         ("velocity, normal to the flank", f"{impact.velocity:.4f} m/s"),
         ("force over the full face (upper bound)", f"{impact.force:.0f} N"),

@@ -1,17 +1,16 @@
 """`run --plan`: what a scene asks is planned, and the choice is run."""
 
 import argparse
-import math
 
 from herringbone.commands.options import given_by
 from herringbone.commands.output import say
 from herringbone.commands.studies.steady import tell
 from herringbone.core import OutcomeKind, ParameterError
+from herringbone.core.declaring.units import R_MIN
 from herringbone.scenes.asking import Range
 from herringbone.studies.planning.plan import Plan, plan
 from herringbone.studies.planning.text import plan_text
 
-_R_MIN = 30.0 / math.pi
 _CHOSEN = ("algorithm", "step", "tolerance", "fuse", "record", "slow", "start", "t_end")
 
 
@@ -62,7 +61,7 @@ def run_steady(options: argparse.Namespace, found: Plan) -> OutcomeKind:
     state = steady(
         options.system,
         scene=found.scene,
-        speed=_one(at.speed, "speed", _R_MIN, "r/min"),
+        speed=_one(at.speed, "speed", R_MIN, "r/min"),
         torque=_one(at.torque, "torque", 1.0, "N m"),
         tolerance=found.tolerance,
     )

@@ -1,9 +1,15 @@
 """The units that variables may carry, as exponents of kg, m, s and rad."""
 
+import math
 from collections.abc import Iterable
 from typing import Final
 
 from herringbone.core.errors import StructureError
+
+R_MIN: Final = 30.0 / math.pi
+"""r/min in 1 rad/s."""
+RAD_S: Final = math.pi / 30.0
+"""rad/s in 1 r/min."""
 
 UNITS: Final[dict[str, dict[str, float]]] = {
     "1": {},

@@ -65,7 +65,7 @@ class FmuPart(ABC):
         self.name, self.file, self._alike = name, file, alike
         self.has_states: bool | None = None
         self.signature: Signature | None = None
-        self._running = False
+        self._running = self._freed = False
         self.model = model or read_fmu(file)
         try:
             self.variables: Mapping[str, PartVariable] = (
@@ -267,7 +267,13 @@ class FmuPart(ABC):
 
     @keeping_modes
     def free(self) -> None:
-        """Free the instance, unless it has failed for good, and remove the extracted files."""
+        """Free the instance, unless it has failed for good, and remove the extracted files.
+
+        Once: whoever frees an FMU again calls a library that may be gone, and ends the process.
+        """
+        if self._freed:
+            return
+        self._freed = True
         if not self._log.fatal:
             self.slave.freeInstance()
         self._remove_files()

@@ -8,14 +8,14 @@ from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import Component, Declaration, Experiment, Variable
 from herringbone.core.caching.keys import sources_key
-from herringbone.core.declaring.units import base_exponents
+from herringbone.core.declaring.units import R_MIN, base_exponents
 from herringbone.core.declaring.variable import Causality
 
 EXPERIMENT: Final = Experiment(stop=0.01, step=1e-5)
 """Default experiment of components."""
 DISPLAY_UNITS: Final = {
     "rad": ("deg", 180.0 / math.pi),
-    "rad/s": ("r/min", 30.0 / math.pi),
+    "rad/s": ("r/min", R_MIN),
     "N": ("kN", 1e-3),
     "m/s": ("mm/s", 1e3),
 }

@@ -1,10 +1,10 @@
 """All figures of a loaded pair under given conditions."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from herringbone.core import ParameterError
+from herringbone.core.declaring.units import RAD_S
 from herringbone.gears.job import GearJob
 from herringbone.gears.load.deviating_teeth import DeviatingLoad, deviating_load
 from herringbone.gears.load.dynamic_factor import (
@@ -17,7 +17,6 @@ from herringbone.gears.load.loaded_pair import LoadedPair, Symmetry, loaded_pair
 from herringbone.gears.stiffness.load_sharing import check_held
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 
-_RPM = math.pi / 30.0
 _USUAL_CLASS = 6
 _FLANK_PHASES = 32
 """Phases of the load on the flanks; of all of them only some if there are more."""
@@ -34,7 +33,7 @@ class Conditions:
         symmetry: deviation of a double-helical pair; None: none.
     """
 
-    speed: float = 1000.0 * _RPM
+    speed: float = 1000.0 * RAD_S
     accuracy: int | None = None
     load_factor: float = 1.0
     symmetry: Symmetry | None = None

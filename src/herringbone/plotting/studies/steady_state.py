@@ -4,8 +4,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
+from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.analysis.steady.state import SteadyState
+from herringbone.core.declaring.units import R_MIN
 from herringbone.plotting.studies.coinciding import coinciding
 from herringbone.plotting.style import (
     COLOURS,

@@ -1,12 +1,12 @@
 """A leaner model that a scene has: what it is for the core, and what is said of its error."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from herringbone.analysis.accuracy.error_budget import by_size
 from herringbone.core import ParameterError
+from herringbone.core.declaring.units import R_MIN
 from herringbone.result.budget import BudgetRow, Known
 from herringbone.result.result import Result
 from herringbone.scenes import Model, Scene
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 SOURCE = "model left out"
 """Row of the error budget that tells a model's error."""
-_R_MIN = 30.0 / math.pi
 
 
 def lean_of(scene: Scene) -> "Lean":
@@ -111,7 +110,7 @@ def _within(value: float | None, ends: Range | None) -> bool:
 def _where(model: Model) -> str:
     found = []
     if model.speed:
-        low, high = (_R_MIN * speed for speed in model.speed)
+        low, high = (R_MIN * speed for speed in model.speed)
         found.append(f"{low:.5g} to {high:.5g} r/min")
     if model.torque:
         found.append(f"{model.torque[0]:.5g} to {model.torque[1]:.5g} N m")

@@ -4,11 +4,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from herringbone.analysis.leaner.question import Question, apart, lines_of
-from herringbone.analysis.steady.periodic import R_MIN
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import HerringboneError
+from herringbone.core.declaring.units import R_MIN
 from herringbone.cosim.structure.system import System
 from herringbone.running.operating.at_point import prepared_at
 from herringbone.running.operating.lean import lean_of

@@ -1,6 +1,5 @@
 """The figures of a run in a summary: operating point, forces, powers, spectra, radiation."""
 
-import math
 import textwrap
 from collections.abc import Iterable, Iterator
 
@@ -17,10 +16,10 @@ from herringbone.analysis.figures.standstill import stands_still
 from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.declaring.units import R_MIN
 from herringbone.result.result import Result
 from herringbone.running.reporting.of_sensors import sensor_lines
 
-_R_MIN = 30.0 / math.pi
 _MM = 1e3
 _READABLE = {"N": (1.0, "N"), "m/s": (_MM, "mm/s"), "m": (1e6, "um"), "N.m": (1.0, "N m")}
 _HIGHEST = 3000.0
@@ -81,7 +80,7 @@ def _of_gear_pair(result: Result, gear: str) -> Iterator[tuple[str, str]]:
         frequency = run_mesh_frequency(result, gear=gear)
         mesh = f", mesh frequency f_m {frequency:.1f} Hz" if frequency else ""
         mean = speed[steady_part(result).rows].mean()
-        yield "Pinion speed", f"{_rounded(mean * _R_MIN, 1)} r/min{mesh}"
+        yield "Pinion speed", f"{_rounded(mean * R_MIN, 1)} r/min{mesh}"
     found = shaft_torques(result, gear)
     torques = {place: t.sign * moments(result, t.column).mean for place, t in found.items()}
     if torques:

@@ -4,7 +4,6 @@ All are taken over the steady part of the run; units stand in the names: r/min, 
 dB re 1 pW. What the parts cannot answer is left out.
 """
 
-import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,10 +21,10 @@ from herringbone.analysis.figures.standstill import stands_still
 from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.declaring.units import R_MIN
 from herringbone.result.result import Result
 from herringbone.running.reporting.of_sensors import sensor_values
 
-_R_MIN = 30.0 / math.pi
 _HIGHEST = 3000.0
 """Of spectral lines [Hz]."""
 
@@ -76,7 +75,7 @@ def _gearbox(result: Result) -> Iterator[tuple[str, Any]]:
 def _gear_pair(result: Result, gear: str) -> Iterator[tuple[str, Any]]:
     speed = signal(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion", part=gear)
     if speed is not None:
-        yield "pinion_speed_r_min", float(speed[steady_part(result).rows].mean()) * _R_MIN
+        yield "pinion_speed_r_min", float(speed[steady_part(result).rows].mean()) * R_MIN
     yield "mesh_frequency_Hz", run_mesh_frequency(result, gear=gear)
     torques = shaft_torques(result, gear).items()
     yield "torque_Nm", {place: t.sign * moments(result, t.column).mean for place, t in torques}

@@ -3,8 +3,6 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from herringbone.analysis.leaner.question import Lines, Question, lines_of
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
@@ -12,6 +10,7 @@ from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.analysis.twin.fused.core import Steps, closeness
 from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST
 from herringbone.core import ParameterError
+from herringbone.core.declaring.units import R_MIN
 from herringbone.scenes import Scene
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.estimated import Ladder, frozen_where_they_bend
@@ -152,7 +151,7 @@ def _steady(solver: SteadySolver, point, near: SteadyState | None) -> SteadyStat
     if not found.converged:
         raise ParameterError(
             f"plan: {solver.structure.system.name} has no steady state that was found at "
-            f"{found.speed * 30.0 / np.pi:.5g} r/min; narrow the range, or ask for a transient"
+            f"{found.speed * R_MIN:.5g} r/min; narrow the range, or ask for a transient"
         )
     return found
 
@@ -171,7 +170,7 @@ def _remarks(questions: Sequence[Question], states: Sequence[SteadyState]) -> li
                 break
     for state in states:
         if state.bends:
-            where = f"{state.speed * 30.0 / np.pi:.5g} r/min"
+            where = f"{state.speed * R_MIN:.5g} r/min"
             found.append(f"laws bend at {where}: {', '.join(state.bends)}")
             break
     return found

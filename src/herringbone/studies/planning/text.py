@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from herringbone.core import HerringboneError
+from herringbone.core.declaring.units import R_MIN
 from herringbone.core.errors import reason
 from herringbone.core.places.files import write_whole
 from herringbone.scenes import Motion
@@ -13,7 +14,6 @@ from herringbone.scenes.scene_text import scene_text
 from herringbone.studies.planning.plan import Plan
 from herringbone.studies.planning.rung import Rung, Worst
 
-_R_MIN = 30.0 / math.pi
 SCENE, SUMMARY = "scene.toml", "plan.json"
 
 
@@ -107,7 +107,7 @@ def _time(seconds: float | None) -> str:
 
 def _where(found: Worst) -> str:
     speed, torque = found.point.speed, found.point.torque
-    said = [f"{_R_MIN * speed:.5g} r/min"] if speed is not None else []
+    said = [f"{R_MIN * speed:.5g} r/min"] if speed is not None else []
     said += [f"{torque:.5g} N m"] if torque is not None else []
     return f" at {', '.join(said)}" if said else ""
 

@@ -1,7 +1,6 @@
 """The backlash law, where it matters, and the jumps that it makes."""
 
 import itertools
-import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ import pandas as pd
 
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import HerringboneError
+from herringbone.core.declaring.units import RAD_S
 from herringbone.core.places.temporary import temporary_folder
 from herringbone.running.api import run
 from herringbone.scenes import Start
@@ -39,7 +39,6 @@ _APART = 100.0
 """Of the median distance of the jumps over the pairs [r/min], whatever the last digits."""
 _BIN, _STEP = 0.05, 5e-5
 """Of a level, and between values [s]."""
-_SPEED_IN = math.pi / 30.0
 _BACKLASH = 180.0
 """2 delta of table 3.1 [µm]."""
 
@@ -95,9 +94,9 @@ def _sweep(errors: Path, begin: float, end: float, length: float) -> tuple[np.nd
     """
     bodies, teeth = Bodies(), JOB.pair.number_of_teeth
     inertia = 2.0 * (bodies.inertia[0] + bodies.inertia[1] * (teeth[0] / teeth[1]) ** 2)
-    spare = inertia * (end - begin) * _SPEED_IN / length
+    spare = inertia * (end - begin) * RAD_S / length
     values: dict[str, float | str | Path] = {
-        f"{names.GEAR}.der(angle)": begin * _SPEED_IN,
+        f"{names.GEAR}.der(angle)": begin * RAD_S,
         f"{names.GEAR}.tooth_errors": str(errors),
         names.SYMMETRY_DEVIATION: 0.0,
         "pinion_torque.torque_factor": (_LIGHT + 0.5 * spare) / TORQUE,
@@ -110,7 +109,7 @@ def _sweep(errors: Path, begin: float, end: float, length: float) -> tuple[np.nd
     if not result.outcome.completed:
         raise HerringboneError(f"the sweep from {begin:g} r/min failed: {result.outcome.message}")
     speed, force = (result.data[result.column(name)].to_numpy() for name in (_SPEED, _FORCE))
-    return speed / _SPEED_IN, force
+    return speed / RAD_S, force
 
 
 def _jump(sweep: pd.DataFrame) -> float:

@@ -9,6 +9,7 @@ import pandas as pd
 from herringbone.analysis.figures.sensing.plateaus import plateaus
 from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor, sensor_velocity
 from herringbone.analysis.figures.spectra import amplitude_spectrum, mesh_frequency
+from herringbone.core.declaring.units import R_MIN
 from herringbone.result.result import TIME
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.pair.given import JOB
@@ -17,7 +18,7 @@ from herringbone.thesis.rig.runs import SPEEDS, cycle_run
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_R_MIN, _MM = 30.0 / np.pi, 1e3
+_MM = 1e3
 _UNITS = {"speed": "r/min", "frequency": "Hz", "shows_at": "Hz", "amplitude": "mm/s"}
 _FILTERS = {"no filter": False, "anti-alias filter": True}
 _LIFT = 0.045
@@ -42,7 +43,7 @@ def compute() -> Outcome:
             at = time[0] + record.time
             own = record.velocity[(at >= begin) & (at <= plateau.end)]
             found = amplitude_spectrum(own, 1.0 / sensor.sampling_hz)
-            speed = round(_R_MIN * plateau.speed)
+            speed = round(R_MIN * plateau.speed)
             parts += [(speed, words, f, _MM * a)
                       for f, a in zip(found.frequency, found.amplitude, strict=True)]  # fmt: skip
             for order in range(1, 7):

@@ -8,6 +8,7 @@ import pandas as pd
 from herringbone.analysis.asked import shaft_torques, signal
 from herringbone.analysis.figures.sensing.plateaus import plateaus
 from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.declaring.units import R_MIN
 from herringbone.result.result import TIME, Result
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.rig.runs import SPEEDS, cycle_run
@@ -15,7 +16,6 @@ from herringbone.thesis.rig.runs import SPEEDS, cycle_run
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_R_MIN = 30.0 / np.pi
 _EVERY = 50
 """Records of a run per row: 5 ms, which hides the mesh."""
 _POWERS = ("from_supply", "circulating", "recovered", "loss_of_load_motor")
@@ -49,7 +49,7 @@ def _powers(result: Result) -> pd.DataFrame:
     speed = signal(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion")
     found = {
         "time": result.data[TIME].to_numpy(),
-        "speed": _R_MIN * np.asarray(speed),
+        "speed": R_MIN * np.asarray(speed),
         "from_supply": signal(result, Role.DRIVE, Quantity.ELECTRICAL_POWER),
         "circulating": pinion * speed,
         "recovered": signal(result, Role.LOAD, Quantity.RECOVERED_POWER),

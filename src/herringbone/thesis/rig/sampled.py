@@ -9,6 +9,7 @@ import pandas as pd
 
 from herringbone.analysis.figures.sensing.plateaus import SAMPLES, plateau_statistics
 from herringbone.analysis.figures.sensing.sensors import sensor_figures
+from herringbone.core.declaring.units import R_MIN
 from herringbone.thesis.entry import table
 from herringbone.thesis.rig.runs import SENSORS, TEETH, cycle_run
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_R_MIN, _MM = 30.0 / np.pi, 1e3
+_MM = 1e3
 _FIGURES = ("rms", "peak_to_peak", "rms_settled", "lowest", "highest")
 _TORQUE_RATIO = 3.0
 """Torque set point of the load motor over that of the pinion."""
@@ -35,7 +36,7 @@ def statistics(cycle: str, classes: Sequence[str]) -> pd.DataFrame:
     return table(
         {
             "teeth": found["teeth"],
-            "speed": np.rint(_R_MIN * found["speed"]),
+            "speed": np.rint(R_MIN * found["speed"]),
             "torque": np.rint(found["torque"] / _TORQUE_RATIO),
             "sensor": found["sensor"],
             **{name: _MM * found[name] for name in _FIGURES},

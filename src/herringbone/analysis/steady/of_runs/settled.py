@@ -11,8 +11,9 @@ import numpy as np
 from herringbone.analysis.figures.settling import changes, moving_speed, settling_groups
 from herringbone.analysis.steady.of_runs.ending import Ending, ending_of
 from herringbone.analysis.steady.outputs import Harmonics
-from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
+from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.core import ParameterError
+from herringbone.core.declaring.units import R_MIN
 from herringbone.core.places.part_path import PartPath
 from herringbone.result.result import Result
 

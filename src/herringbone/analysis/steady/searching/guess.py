@@ -13,6 +13,7 @@ from herringbone.analysis.steady.marching.marched import March, marched
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.declaring.units import R_MIN
 
 PLACES = 64
 """Points in time of a mesh period, at first."""
@@ -25,7 +26,6 @@ _SLOW, _THIN, _SAME = 6, 1e-3, 1e-2
 SETTLING = 0.3
 """Length of a march that is to settle [s]; at least some periods."""
 _FEWEST = 8
-_R_MIN = 30.0 / np.pi
 _RAMP = 1.0
 """Turns of the first pinion over which deviations come in that part teeth at rest."""
 
@@ -181,8 +181,8 @@ def _check_speed(structure: Structure, speed: float) -> None:
     most = 2.0 * np.pi * _FASTEST * structure.turns_of_pinion / structure.meshes
     if abs(speed) > most:
         raise ParameterError(
-            f"speed = {speed:g} rad/s ({speed * _R_MIN:g} r/min): at most {most:.4g} rad/s "
-            f"({most * _R_MIN:.4g} r/min), where teeth mesh {_FASTEST:g} times a second and sound "
+            f"speed = {speed:g} rad/s ({speed * R_MIN:g} r/min): at most {most:.4g} rad/s "
+            f"({most * R_MIN:.4g} r/min), where teeth mesh {_FASTEST:g} times a second and sound "
             "goes through a tooth but once; ask for a lower speed"
         )
 
