@@ -24,6 +24,7 @@ from herringbone.studies.evaluators.settled import Settled
 from herringbone.studies.evaluators.steady import Steady
 from herringbone.studies.evaluators.transient import Transient
 from herringbone.studies.keys import base_settings
+from herringbone.studies.leaner import leaner_notes
 from herringbone.studies.study import SET_POINTS, Study, Value, grid
 from herringbone.studies.sweep import Asked, Sweep, Told, computed
 from herringbone.studies.working.executors import Workers
@@ -73,7 +74,7 @@ def sweep(
         parquet: write the table as Parquet as well.
         output: folder; what it has of the study is not computed again. None: nothing is kept.
         overwrite: the table of another study in the folder may be replaced.
-        told: called with a line on what is ahead.
+        told: called with lines on what is ahead, and on what is not known of a leaner model.
         progress: called with the number of points that were done since.
 
     Returns:
@@ -93,7 +94,8 @@ def sweep(
     named = str(scene) if scene is not None else None
     base = Base(_found(system), named, wishes, str(Path.cwd()))
     structure, folder = load_system(base.system)
-    known = with_known_values(structure, load_scene(folder, named), wishes)
+    chosen_scene = load_scene(folder, named)
+    known = with_known_values(structure, chosen_scene, wishes)
     chosen = evaluator or _suited(known, wishes)
     check_columns(known, chosen.columns)
     if series and not chosen.has_series:
@@ -102,6 +104,8 @@ def sweep(
     units |= {SPEED: study.speed_unit} if SPEED in units else {}
     first = study.point(0)
     commanded(known.with_values({n: v for n, v in first.items() if n not in SET_POINTS}), first)
+    for line in leaner_notes(chosen_scene.model, study, wishes.values):
+        told(line)
     settings = base_settings(base, chosen)
     asked = Asked(
         key_of(settings),

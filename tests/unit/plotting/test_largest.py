@@ -23,3 +23,11 @@ def test_the_largest_level_of_each_group_and_where_it_is():
     (line,) = largest_text(points)
     assert line.startswith("bearing force: largest 98.28 N rms at torque 350 N m")
     assert line.endswith("speed 2000 r/min")
+
+
+def test_outputs_are_called_by_their_names():
+    name = "gearbox.modal_housing.pinion_left.v_y"
+    table = TABLE[["point", "outcome", "bearing_force.rms"]]
+    points = Points(table.rename(columns={"bearing_force.rms": f"{name}.rms"}), {})
+    (line,) = largest_text(points)
+    assert line.startswith(f"{name}: largest 98.28")

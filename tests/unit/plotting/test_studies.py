@@ -216,3 +216,12 @@ def test_axes_of_small_lengths_are_in_micrometres_and_two_values_make_no_map():
     assert points.scaled_label("mesh.f_a") == "mesh.f_a [µm]"
     assert [label for label, _ in points.curves("speed")] == ["f_a 0 µm", "f_a 15 µm"]
     assert not is_map(points)
+
+
+def test_labels_of_outputs_are_the_ends_that_differ(table):
+    one, two, far = "first.housing.seat.v_y", "second.housing.seat.v_y", "first.shaft.left.f_y"
+    some = shipped(table, torque=200.0, zeta=0.01, backlash=1e-4)
+    own = some.assign(**{f"{name}.rms": some["force.rms"] for name in (one, two, far)})
+    figure = levels(Points(own, UNITS), "speed", (one, two, far))
+    labels = [axes.get_ylabel().split(",")[0] for axes in figure.axes[::2]]
+    assert labels == [one, two, "left.f_y"]

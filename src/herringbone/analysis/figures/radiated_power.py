@@ -19,11 +19,17 @@ from functools import partial
 
 import numpy as np
 
-from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
+from herringbone.analysis.figures.modal_response import (
+    housing_of,
+    modal_velocity,
+    modal_velocity_amplitudes,
+    seat_forces,
+)
 from herringbone.analysis.figures.operating_point import SteadyPart, steady_part
 from herringbone.analysis.figures.remembered_figures import figure_of
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum
 from herringbone.core import ParameterError
+from herringbone.core.facts import Facts
 from herringbone.housing import ModalHousing
 from herringbone.result.result import Result
 
@@ -38,19 +44,22 @@ _HANN_BANDWIDTH = 1.5
 """Equivalent noise bandwidth of the Hann window, in bins."""
 
 
-@dataclass(frozen=True)
-class RadiatedPower:
-    """Equivalent radiated power over the steady part of a run.
+@dataclass(frozen=True, repr=False)
+class RadiatedPower(Facts):
+    """Equivalent radiated power over the steady part of a run, or of a steady state.
 
     Attributes:
-        frequency_hz: (k,) up to where the housing's data hold [Hz].
+        frequency_hz: (k,) up to where the housing's data hold [Hz]; of a steady state its lines.
         power: (k,) in each bin [W]; a single tone spreads over three bins, whose sum is its power.
-        resolution_hz: distance of bins [Hz].
+            Of a steady state that of each line.
+        resolution_hz: distance of bins [Hz]; of a steady state that of two harmonics.
+        highest_hz: up to where it is known [Hz].
     """
 
     frequency_hz: np.ndarray
     power: np.ndarray
     resolution_hz: float
+    highest_hz: float
 
     @property
     def total(self) -> float:
@@ -61,6 +70,17 @@ class RadiatedPower:
     def level_db(self) -> float:
         """Sound power level [dB re 1 pW]; -inf if nothing moves."""
         return float(level_db(self.total))
+
+    @property
+    def told(self) -> str:
+        """Level and loudest frequency, for people."""
+        level = f"{self.level_db:.1f} dB re 1 pW up to {self.highest_hz:.0f} Hz"
+        if not self.total > 0.0:
+            return level
+        return f"{level}, most at {self.frequency_hz[self.power.argmax()]:.0f} Hz"
+
+    def _facts(self) -> dict[str, str]:
+        return {"level": self.told}
 
 
 def level_db(power: np.ndarray | float) -> np.ndarray:
@@ -78,17 +98,39 @@ def power_inputs(
     """
     forces = seat_forces(result, part)
     housing = housing or housing_of(result, part)
-    if housing is None or housing.gram is None:
-        raise ParameterError(
-            "no Gram matrix of the surface: the radiated power takes modal data with "
-            "surface_gram.csv, as `herringbone housing build` makes them"
-        )
+    housing = with_surface(housing)
     steady = steady_part(result)
     if result.outcome.unstable:
         raise ParameterError("the run diverged: no radiated power")
     if steady.end - steady.begin < FEWEST_SAMPLES / housing.valid_to_hz:
         raise ParameterError(f"{steady.end - steady.begin:g} s are too short for a radiated power")
     return housing, forces, steady
+
+
+def with_surface(housing: ModalHousing | None) -> ModalHousing:
+    """The same data; raises ParameterError if they do not tell of the surface."""
+    if housing is None or housing.gram is None:
+        raise ParameterError(
+            "no Gram matrix of the surface: the radiated power takes modal data with "
+            "surface_gram.csv, as `herringbone housing build` makes them"
+        )
+    return housing
+
+
+def power_of_lines(
+    housing: ModalHousing, frequency_hz: np.ndarray, forces: np.ndarray
+) -> np.ndarray:
+    """Power (k,) that each of harmonic forces has radiated [W]; 0 where the data do not hold.
+
+    Args:
+        housing: with a Gram matrix of the surface.
+        frequency_hz: (k,) of the forces, not 0 [Hz].
+        forces: (12, k) complex amplitudes at the seats [N], in the order of `SEAT_DOFS`.
+    """
+    modal = modal_velocity_amplitudes(housing, frequency_hz, forces)
+    power = np.einsum("mk,mn,nk->k", modal.conj(), np.asarray(housing.gram), modal).real
+    power[frequency_hz > housing.valid_to_hz] = 0.0
+    return 0.5 * AIR_DENSITY * SPEED_OF_SOUND * power
 
 
 def radiated_power(
@@ -122,6 +164,7 @@ def _estimate(housing: ModalHousing, forces: np.ndarray, steady: SteadyPart) -> 
     spectrum = amplitude_spectrum(surface, steady.sample_step)
     power = 0.5 * AIR_DENSITY * SPEED_OF_SOUND * np.square(spectrum.amplitude).sum(axis=1)
     shown = spectrum.frequency <= housing.valid_to_hz
+    highest = min(housing.valid_to_hz, float(spectrum.frequency[-1]))
     return RadiatedPower(
-        spectrum.frequency[shown], power[shown] / _HANN_BANDWIDTH, spectrum.resolution
+        spectrum.frequency[shown], power[shown] / _HANN_BANDWIDTH, spectrum.resolution, highest
     )

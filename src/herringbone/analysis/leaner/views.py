@@ -16,7 +16,7 @@ from herringbone.analysis.figures.modal_response import (
     modal_velocity_amplitudes,
     ports_at_seats,
 )
-from herringbone.analysis.figures.radiated_power import AIR_DENSITY, SPEED_OF_SOUND, level_db
+from herringbone.analysis.figures.radiated_power import level_db, power_of_lines
 from herringbone.analysis.figures.sensing.sensors import chain_of
 from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.analysis.figures.system_housings import data_of
@@ -99,10 +99,8 @@ class Power:
         """See `View`; up to where the housing's data hold."""
         rows = []
         for housing, own in _by_housing(self.housings, given):
-            modal = _answer(housing, own, frequency_hz)
-            power = np.einsum("mk,mn,nk->k", modal.conj(), np.asarray(housing.gram), modal).real
-            power[frequency_hz > housing.valid_to_hz] = 0.0
-            rows.append(2.0 * AIR_DENSITY * SPEED_OF_SOUND * power)
+            power = power_of_lines(housing, frequency_hz[1:], 2.0 * own[:, 1:])
+            rows.append(np.concatenate([[0.0], power]))
         return np.array(rows)
 
     def signals(self, given: np.ndarray, step: float) -> np.ndarray:

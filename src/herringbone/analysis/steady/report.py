@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from herringbone.analysis.figures.radiated_power import LABEL
 from herringbone.analysis.steady.of_runs.settled import SettledState
 from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
+from herringbone.analysis.steady.sound import radiated_powers
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.declaring.units import R_MIN
 from herringbone.core.places.files import replacing
@@ -53,7 +55,14 @@ def steady_summary(state: SteadyState | SettledState) -> dict:
             "largest_multiplier": state.multipliers.largest if _are_cheap(state) else None,
             "bends": list(state.bends),
         }
-    return {**known, **own, "levels": levels, "notes": list(state.notes)}
+    powers = radiated_powers(state) if state.found else {}
+    return {
+        **known,
+        **own,
+        "levels": levels,
+        "radiated_power_dB": {part: _known(p.level_db) for part, p in powers.items()},
+        "notes": list(state.notes),
+    }
 
 
 def _worst(state: SteadyState) -> dict[str, str | float] | None:
@@ -85,6 +94,10 @@ def steady_text(state: SteadyState | SettledState) -> list[str]:
     lines = _of_run(state) if isinstance(state, SettledState) else _of_balance(state)
     for group in state.channels:
         lines += ["", *_group(state, group)]
+    if powers := radiated_powers(state):
+        several = len(powers) > 1
+        lines += ["", f"radiated power ({LABEL}):"]
+        lines += [f"  {f'{part}: ' if several else ''}{p.told}" for part, p in powers.items()]
     return lines
 
 

@@ -38,8 +38,7 @@ def largest_text(points: Points) -> list[str]:
     for group, rms, at in largest_levels(points):
         told = ", ".join(f"{name} {_value(points, name, value)}" for name, value in at.items())
         factor, unit = points.scale(f"{group}.rms")
-        name = group.replace("_", " ")
-        lines.append(f"{name}: largest {factor * rms:.4g} {unit} rms at {told}")
+        lines.append(f"{points.called(group)}: largest {factor * rms:.4g} {unit} rms at {told}")
     return lines
 
 

@@ -19,6 +19,8 @@ _MOST_MARKS = 12
 _ORDERS = 6
 _OF_MARKS = 2
 """Points of a line that is a mark and no curve, at most."""
+_WORDS = 2
+"""Of an output's name that are shown, at least."""
 _ENTRY, _CHARACTER = 0.2, 0.062
 """Height of an entry of the legend, and width of a character in it [inch]."""
 
@@ -117,7 +119,15 @@ def _rms(
     axes.set_title("\n".join(told), fontsize=7.5)
     _, rows = curves[-1]
     mark_peaks(axes, rows[across].to_numpy(float), factor * rows[column].to_numpy(float))
-    axes.set_ylabel(f"{group.replace('_', ' ')}, rms [{unit}]")
+    axes.set_ylabel(f"{_label(points, group)}, rms [{unit}]")
+
+
+def _label(points: Points, group: str) -> str:
+    """What is drawn; of an output's name the end that tells it from others: panels are small."""
+    words = points.called(group).split(".")
+    every = [other.split(".") for other in points.groups]
+    alone = (n for n in range(_WORDS, len(words)) if sum(o[-n:] == words[-n:] for o in every) == 1)
+    return ".".join(words[-next(alone, len(words)) :])
 
 
 def _orders(
@@ -132,7 +142,7 @@ def _orders(
         text = "$f_m$" if order == 1 else f"${order} f_m$"
         colour = COLOURS[(order - 1) % len(COLOURS)]
         axes.plot(x, factor * rows[f"{group}.order_{order}"], label=text, color=colour)
-    axes.set_ylabel(f"{group.replace('_', ' ')}, amplitude [{unit}]")
+    axes.set_ylabel(f"{_label(points, group)}, amplitude [{unit}]")
     if label:
         axes.set_title(label, fontsize=8.5, pad=18.0)
     legend(axes, 7)

@@ -44,6 +44,10 @@ class Points:
         """Groups and outputs that have an rms."""
         return tuple(c.removesuffix(".rms") for c in self.table.columns if c.endswith(".rms"))
 
+    def called(self, group: str) -> str:
+        """A group in words; an output by its name as it is."""
+        return group if "." in group else group.replace("_", " ")
+
     @cached_property
     def parameters(self) -> tuple[str, ...]:
         """Parameters of which the points have several values."""

@@ -51,6 +51,7 @@ def lean_notes(
     changed: Mapping[str, object],
     speed: float | None = None,
     torque: float | None = None,
+    elsewhere: str = "at this operating point",
 ) -> tuple[str, ...]:
     """What a user should know of the error of a leaner model; nothing of a whole one.
 
@@ -58,6 +59,7 @@ def lean_notes(
         model: of the scene.
         changed: values that the caller set besides.
         speed, torque: operating point that the caller asked for [rad/s, N m].
+        elsewhere: where it is not known, if it is not there.
     """
     if not model:
         return ()
@@ -73,7 +75,7 @@ def lean_notes(
         names = ", ".join(sorted(changed))
         return (f"{said}was {where}, but is not known with other values of {names}",)
     if not certified(model, changed, speed, torque):
-        return (f"{said}is {where}, but not known at this operating point",)
+        return (f"{said}is {where}, but not known {elsewhere}",)
     return (f"{said}is {where}",)
 
 

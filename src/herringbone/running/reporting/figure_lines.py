@@ -187,8 +187,6 @@ def _radiation(result: Result) -> Iterator[str]:
             continue
         levels += 1
         of = f"{part}: " if len(housings) > 1 else ""
-        highest = found.frequency_hz[found.power.argmax()]
-        yield labelled("Radiated power", f"{of}{found.level_db:.1f} dB re 1 pW up to "
-                    f"{found.frequency_hz[-1]:.0f} Hz, most at {highest:.0f} Hz")  # fmt: skip
+        yield labelled("Radiated power", of + found.told)
     if levels:
         yield labelled("", f"({LABEL})")
