@@ -86,6 +86,7 @@ ONLY_IN: dict[str, set[str]] = {
         "kernels/compiling/kept_pieces.py",
         "kernels/compiling/linking.py",
         "kernels/compiling/pieces.py",
+        "kernels/compiling/simplifying.py",
     },
     "pythonfmu": {"fmi"},
     "fmpy": {"cosim", "fmi"},

@@ -31,7 +31,7 @@ from herringbone.core import (
 from herringbone.core.declaring.pair_values import PairValues
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.compiling.jit import kernel, seldom
 
 ROWS = 256
 """Most rows of a cycle."""
@@ -118,7 +118,7 @@ _REFUSALS = (
 )
 
 
-@kernel
+@seldom
 def _load(
     values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
 ) -> int:

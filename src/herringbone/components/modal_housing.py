@@ -47,7 +47,7 @@ from herringbone.core import (
 )
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import modal
-from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.compiling.jit import kernel, seldom
 from herringbone.kernels.signals import STRIDE, all_finite, monomial, shift, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG
 
@@ -333,7 +333,7 @@ def _start(b: np.ndarray) -> None:
 _WANTED = modal_data.wanted_rows(_DOFS)
 
 
-@kernel
+@seldom
 def _load(
     values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
 ) -> int:

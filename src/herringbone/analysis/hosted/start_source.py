@@ -16,7 +16,6 @@ from herringbone.analysis.hosted.start_places import FlangePlaces, StartPlaces
 
 _KERNELS = """
 
-from herringbone.kernels.compiling.jit import seldom
 from herringbone.kernels.periodic.motion import periodic_motion
 from herringbone.kernels.periodic.places import Body
 from herringbone.kernels.stepping.adaptive import LARGEST

@@ -81,7 +81,7 @@ def system_out(b: np.ndarray, t: float) -> None:
 {own_results}    return
 
 
-@kernel
+@seldom
 def system_start(b: np.ndarray) -> None:
     blocks = b[{first}:]
     refresh(b)
@@ -96,7 +96,7 @@ def system_indicators(b: np.ndarray, t: float, z: np.ndarray) -> None:
 {indicators}    return
 
 
-@kernel
+@seldom
 def system_load(
     values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
 ) -> int:
@@ -105,7 +105,7 @@ def system_load(
 {loads}    return 0
 
 
-@kernel
+@seldom
 def system_verify(b: np.ndarray, report: np.ndarray) -> int:
     blocks = b[{first}:]
     refresh(b)

@@ -18,7 +18,7 @@ _HEADER = '''"""Monolithic twin of a system; generated, not to be edited."""
 import numpy as np
 
 from herringbone.components.registry import COMPONENTS
-from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.compiling.jit import kernel, seldom
 
 '''
 _OBSERVE = """

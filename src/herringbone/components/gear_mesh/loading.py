@@ -13,7 +13,7 @@ from herringbone.components.resources import (
 )
 from herringbone.components.resources.loader import NO_FILE, Refusal, ResourceLoader
 from herringbone.kernels import force_law, tooth_pair_law
-from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.compiling.jit import kernel, seldom
 
 _SAME, _SAME_RATIO = 1e-4, 1e-3  # relative
 _NUMBERS = stiffness_table.PAIR[1]
@@ -51,7 +51,7 @@ _REFUSALS = (
 )
 
 
-@kernel
+@seldom
 def _load(
     values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
 ) -> int:

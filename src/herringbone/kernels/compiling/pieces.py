@@ -17,6 +17,7 @@ from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
 
 from herringbone.core.caching.keys import digest_of
+from herringbone.kernels.compiling.simplifying import simplify
 
 _ANY = "own"
 
@@ -104,6 +105,7 @@ class Piece(JITCodeLibrary):
         ll_module.data_layout = self._codegen._data_layout
         for function in ll_module.functions:
             if not function.is_declaration:
+                simplify(function)
                 for mark in self._marks:
                     function.add_function_attribute(mark)
 
