@@ -123,7 +123,7 @@ def _chosen(platforms: Sequence[str]) -> list[Platform]:
 
 def _folder_of_kernels(model: Model) -> Path:
     """Where the object code of a model's kernels lies in the cache; FMI versions share it."""
-    return cache_folder("native-objects") / f"{model.name}-{model.kernels_key}"
+    return cache_folder("native-objects") / f"{model.kernels_name}-{model.kernels_key}"
 
 
 def _kernels(model: Model, platform: Platform) -> Path:

@@ -27,7 +27,8 @@ class Model:
         component: the component.
         modules: from which its kernels are compiled, with all that they import.
         resources: the files that lie in the FMU's resources folder, by name.
-        identity: what else decides on the kernels, such as the wiring of a system.
+        identity: what else decides on the kernels, such as the wiring of a system; if not given,
+            the component's name.
         shipped: it is made of nothing but the package, so that its FMU is known as the component.
     """
 
@@ -52,7 +53,12 @@ class Model:
     def kernels_key(self) -> str:
         """Key of the object code of its kernels."""
         compiled = kernels_key(objects.__name__, *self.modules)
-        return digest_of(self.name, compiled, self.identity)
+        return digest_of(self.identity or self.name, compiled)
+
+    @property
+    def kernels_name(self) -> str:
+        """What its kernels are kept as; those of systems are shared by all that differ in names."""
+        return "system" if self.identity else self.name
 
     @cached_property
     def library_key(self) -> str:

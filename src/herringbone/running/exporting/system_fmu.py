@@ -131,7 +131,7 @@ def _exported(
         composite.component,
         (make_composite.__module__, make_hosted.__module__),
         composite.resources,
-        identity=_kernels_of(composite.component),
+        identity=_kernels_of(composite.component, [part.name for part in structure.parts]),
     )
     (built,) = build_models([model], platforms=platforms, fmi=fmi).values()
     with written(file):
@@ -139,13 +139,21 @@ def _exported(
     return file
 
 
-def _kernels_of(component: Component) -> str:
+def _kernels_of(component: Component, parts: Sequence[str]) -> str:
     """What decides on the kernels: the generated source, whose name is its digest, and the layout.
 
-    Start values do not, so that another operating point needs no compilation.
+    Start values do not, so that another operating point needs no compilation, and neither does what
+    the system and its parts are called: kernels know places.
     """
     d = component.declaration
-    return repr((component.kernels.out.__module__, d.index, d.size, d.work, d.tables))
+    index = {_numbered(name, parts): place for name, place in d.index.items()}
+    return repr((component.kernels.out.__module__, index, d.size, d.work, d.tables))
+
+
+def _numbered(name: str, parts: Sequence[str]) -> str:
+    """A variable's name, the number of its part in place of the part's path."""
+    path = max((part for part in parts if name.startswith(f"{part}.")), key=len, default="")
+    return f"{parts.index(path)}{name.removeprefix(path)}" if path else name
 
 
 def _started(component: Component) -> Iterator[tuple[str, str, str]]:
