@@ -1,7 +1,8 @@
 """Result of a run: a table of recorded outputs, units, outcome, and how it was computed."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -107,6 +108,10 @@ class Result(Facts):
         Raises:
             ParameterError: there is none, or there are several.
         """
+        if not isinstance(name, str):
+            raise ParameterError(
+                f"{name!r:.60} is no name of a column; several are result.data[result.columns(...)]"
+            )
         if name in self.data:
             return name
         found = find_columns(self.parts, self._shown, [name])[name]
@@ -125,7 +130,14 @@ class Result(Facts):
         return self.data[self.column(name)]
 
     def __contains__(self, name: object) -> bool:
-        return name in self.data.columns
+        """True if `column` knows the name."""
+        with suppress(ParameterError):
+            return bool(self.column(str(name)))
+        return False
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of all columns, as of a table."""
+        return iter(self.data.columns)
 
     def _ipython_key_completions_(self) -> list[str]:
         return list(self.data.columns)

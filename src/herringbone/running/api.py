@@ -4,7 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from herringbone.analysis.steady.set_points import Point
+from herringbone.core import ParameterError
 from herringbone.core.activity import tell
+from herringbone.core.given import check_called
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import AUTO, LI, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import foreign_fmu_policy
@@ -56,7 +58,7 @@ def run(
     reference: bool = False,
     verify: bool = False,
     fuse: bool = False,
-    record: Sequence[str] = (),
+    record: str | Sequence[str] = (),
     progress: bool | Progress = False,
     recorded: Callable[[Result], None] | None = None,
     output: RunOutput | None = None,
@@ -123,7 +125,10 @@ def run(
     Raises:
         HerringboneError: something about the input is wrong.
     """
+    record = (record,) if isinstance(record, str) else record
     check_record(record, fuse=fuse)
+    check_called("progress", progress)
+    _check_output(output)
     check_kind(fmu=fuse and fmu != AUTO_FMU)
     coupling = _asked_for(algorithm)
     if tolerance is not None:
@@ -186,4 +191,20 @@ def _asked_for(algorithm: str | Algorithm | None) -> Algorithm | None:
     """The algorithm that was asked for; None for the automatic choice."""
     if algorithm is None or algorithm == AUTO:
         return None
-    return parse_algorithm(algorithm) if isinstance(algorithm, str) else algorithm
+    if isinstance(algorithm, str):
+        return parse_algorithm(algorithm)
+    if not isinstance(algorithm, Algorithm):
+        raise ParameterError(
+            f"algorithm = {algorithm!r:.60}: it takes a text or an object, 'li:degree=3' or "
+            "LI(degree=3)"
+        )
+    return algorithm
+
+
+def _check_output(output: RunOutput | None) -> None:
+    """Refuse the name of a folder, which says nothing of what may be overwritten there."""
+    if output is not None and not isinstance(output, RunOutput):
+        raise ParameterError(
+            f"output = {output!r:.60}: it takes a RunOutput; write the table by "
+            "result.to_csv(FILE), or a results folder by 'herringbone run -o FOLDER'"
+        )

@@ -12,6 +12,7 @@ from herringbone.components.registry import component
 from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
 from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.declaring.roles import Role
+from herringbone.core.given import check_reference
 from herringbone.core.part import STRUCTURE, Part, PartVariable
 from herringbone.core.places.files import as_texts, beside, is_file, same_folder
 from herringbone.cosim.fmu.file import require_file
@@ -43,7 +44,9 @@ def load_system(reference: str | Path) -> tuple[System, Path]:
 
     Raises:
         StructureError: it cannot be found or read.
+        ParameterError: it is no name or path.
     """
+    check_reference("system", reference, "a name, a folder with system.toml, or an .ssp file")
     if is_ssp(Path(reference)):
         return load_ssp(Path(reference)), Path(reference)
     return read_system(reference), find_system(reference)

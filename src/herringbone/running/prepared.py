@@ -9,6 +9,7 @@ from herringbone.analysis.figures.sensing.sensors import check_sensors
 from herringbone.analysis.figures.system_housings import implausible_housings
 from herringbone.core import EquilibriumError, ParameterError
 from herringbone.core.declaring.roles import Role
+from herringbone.core.given import check_mapping
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.running.chosen_parts import part_for
@@ -52,6 +53,11 @@ class Wishes:
     start_offset: Mapping[str, float] | None = None
     lean: bool = False
     probe: bool = True
+
+    def __post_init__(self) -> None:
+        """Check kinds; raises ParameterError."""
+        check_mapping("values", self.values, '{"gear_mesh.backlash": 1e-4}')
+        check_mapping("replace_parts", self.replace_parts, '{"drive_motor": "Motor.fmu"}')
 
 
 class Prepared(NamedTuple):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from herringbone.analysis.leaner.form import Form
+from herringbone.core import ParameterError
 
 Range = tuple[float, float]
 """Lowest and highest value."""
@@ -37,6 +38,31 @@ class Ask:
     tolerance: float = 0.01
     band: float = math.inf
     orders: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Take a text for one name, and check values.
+
+        Raises:
+            ParameterError: nothing is asked, or a value is out of range.
+        """
+        if isinstance(self.what, str):
+            object.__setattr__(self, "what", (self.what,))
+        if not self.what:
+            raise ParameterError(
+                'ask: what: it takes the names of what is asked, ["seat velocity"]'
+            )
+        if not 0.0 < self.tolerance < 1.0:
+            raise ParameterError(
+                f"ask: tolerance = {self.tolerance:g}: it must lie between 0 and 1"
+            )
+        if self.band < math.inf and (self.form != Form.SPECTRUM or not self.band > 0.0):
+            raise ParameterError(
+                f'ask: band = {self.band:g} Hz: it must be positive, and is of as = "spectrum"'
+            )
+        if (self.form == Form.ORDER) != bool(self.orders) or any(k <= 0.0 for k in self.orders):
+            raise ParameterError(
+                'ask: orders: a list of positive mesh orders goes with as = "order"'
+            )
 
     @property
     def name(self) -> str:

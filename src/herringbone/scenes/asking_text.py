@@ -46,25 +46,13 @@ def _tables(given: Any) -> list[Any]:  # noqa: ANN401 (anything from TOML)
 def _ask(data: Any) -> Ask:  # noqa: ANN401 (anything from TOML)
     _known(data, "ask", {"what", "as", "tolerance", "band", "orders"})
     what = _texts(data.get("what", []), "ask: what")
-    if not what:
-        raise ParameterError('ask: what: it takes the names of what is asked, ["seat velocity"]')
     form = data.get("as", Form.SPECTRUM.value)
     if form not in list(Form):
         raise ParameterError(f"ask: as = {form!r}; it must be one of {', '.join(Form)}")
     tolerance = _number(data.get("tolerance", 0.01), "ask: tolerance")
-    if not 0.0 < tolerance < 1.0:
-        raise ParameterError(f"ask: tolerance = {tolerance:g}: it must lie between 0 and 1")
-    band = math.inf
-    if "band" in data:
-        band = _number(data["band"], "ask: band")
-        if form != Form.SPECTRUM or band <= 0.0:
-            raise ParameterError(
-                f'ask: band = {band:g} Hz: it must be positive, and is of as = "spectrum"'
-            )
+    band = _number(data["band"], "ask: band") if "band" in data else math.inf
     orders = data.get("orders", [])
     orders = tuple(_number(k, "ask: orders") for k in (orders if isinstance(orders, list) else [0]))
-    if (form == Form.ORDER) != bool(orders) or any(k <= 0.0 for k in orders):
-        raise ParameterError('ask: orders: a list of positive mesh orders goes with as = "order"')
     return Ask(what, Form(form), tolerance, band, orders)
 
 

@@ -9,6 +9,7 @@ from herringbone.analysis.set_points import SPEED, TORQUE, addressed
 from herringbone.components.registry import component
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Role
+from herringbone.core.given import check_called, check_mapping, check_reference, check_several
 from herringbone.core.places.files import as_texts, is_file
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_scene, load_system
@@ -17,7 +18,7 @@ from herringbone.running.output.settings import key_of
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes
 from herringbone.studies.axes import numbers
-from herringbone.studies.computing import Progress
+from herringbone.studies.computing import Progress, points_told
 from herringbone.studies.evaluators.asked_columns import check_columns
 from herringbone.studies.evaluators.evaluator import Base, Evaluator
 from herringbone.studies.evaluators.settled import Settled
@@ -53,7 +54,7 @@ def sweep(
     output: str | Path | None = None,
     overwrite: bool = False,
     told: Told = lambda ahead: None,
-    progress: Progress = lambda points: None,
+    progress: bool | Progress = False,
 ) -> Sweep:
     """Evaluate a system at many operating points; see `docs/sweeps.md`.
 
@@ -75,7 +76,7 @@ def sweep(
         output: folder; what it has of the study is not computed again. None: nothing is kept.
         overwrite: the table of another study in the folder may be replaced.
         told: called with lines on what is ahead, and on what is not known of a leaner model.
-        progress: called with the number of points that were done since.
+        progress: True for a bar; or called with the number of points that were done since.
 
     Returns:
         The table, in memory. A point that failed is a row with its outcome.
@@ -83,6 +84,12 @@ def sweep(
     Raises:
         HerringboneError: something about the input is wrong.
     """
+    check_reference("system", system, "a name, a folder with system.toml, or an .ssp file")
+    check_mapping("values", values, '{"gear_mesh.backlash": 1e-4}')
+    check_mapping("vary", vary, '{"gear_mesh.backlash": [1e-4, 2e-4]}')
+    for name, several in {SPEED: speed, TORQUE: torque, **(vary or {})}.items():
+        check_several(name, several)
+    check_called("progress", progress)
     if study is None:
         axes = {SPEED: numbers(SPEED, speed), TORQUE: numbers(TORQUE, torque)}
         study = grid({**{n: v for n, v in axes.items() if v}, **(vary or {})})
@@ -119,9 +126,10 @@ def sweep(
         _told_pairs(known),
     )
     cells = len(known.foreign_parts)
-    return computed(
-        study, base, chosen, asked, Workers(executor, workers, 1 + cells), told, progress
-    )
+    with points_told(progress, len(study.points)) as shown:
+        return computed(
+            study, base, chosen, asked, Workers(executor, workers, 1 + cells), told, shown
+        )
 
 
 def _suited(system: System, wishes: Wishes) -> Evaluator:

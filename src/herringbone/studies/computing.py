@@ -1,7 +1,8 @@
 """The chains of a study that are not there yet: what they cost, and computing them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import chain as joined
 from itertools import islice
@@ -19,6 +20,24 @@ _EVERY = 0.5
 """Time after which points of chains that are not whole are counted [s]."""
 Progress = Callable[[int], None]
 """Called with the number of points that were done since."""
+
+
+@contextmanager
+def points_told(progress: bool | Progress, points: int) -> Iterator[Progress]:
+    """What a study calls inside: a bar of its points for True; nothing for False.
+
+    Args:
+        progress: of the caller.
+        points: of the study.
+    """
+    if not isinstance(progress, bool):
+        yield progress
+        return
+    from tqdm import tqdm  # noqa: PLC0415 (many callers show none)
+
+    tqdm.monitor_interval = 0  # a thread, and what has threads is not forked
+    with tqdm(total=points, unit=" points", disable=not progress) as bar:
+        yield bar.update
 
 
 def measured(

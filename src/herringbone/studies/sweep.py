@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from herringbone.core.caching.keys import digest_of
+from herringbone.core.facts import Facts
 from herringbone.core.places.temporary import temporary_folder
 from herringbone.studies.computing import Progress, compute, measured
 from herringbone.studies.evaluators.evaluator import Base, Evaluator
@@ -57,8 +58,8 @@ class Asked:
     of: str = ""
 
 
-@dataclass(frozen=True)
-class Sweep:
+@dataclass(frozen=True, repr=False)
+class Sweep(Facts):
     """A study that was computed.
 
     Attributes:
@@ -81,6 +82,18 @@ class Sweep:
         from herringbone.plotting.studies.table import Points  # noqa: PLC0415
 
         return levels(Points(self.table, self.units, self.of), across)
+
+    def _facts(self) -> dict[str, str]:
+        columns = list(self.table.columns)
+        varied = columns[columns.index("point") + 1 : columns.index("outcome")]
+        outcomes = self.table["outcome"].value_counts()
+        return {
+            "points": f"{len(self.table)} ({', '.join(f'{n} {k}' for k, n in outcomes.items())})",
+            "over": ", ".join(varied),
+            "table": f"{len(columns)} columns",
+            "files": str(self.files[0].parent) if self.files else "",
+            "of": self.of,
+        }
 
 
 Told = Callable[[str], None]

@@ -38,7 +38,7 @@ class SteadySolver:
         solver: one of `SOLVERS`.
 
     Raises:
-        ParameterError: the tolerance is none, or the solver is unknown.
+        ParameterError: the system or the tolerance is none, or the solver is unknown.
         StructureError: the system cannot be taken apart, or its motion does not repeat.
     """
 
@@ -50,6 +50,11 @@ class SteadySolver:
         lean: Lean = WHOLE,
         solver: str = AUTO,
     ) -> None:
+        if not isinstance(system, System):
+            raise ParameterError(
+                f"system = {system!r:.60}: it takes a System with its start values, such as "
+                "hb.steady(NAME).structure.system"
+            )
         if not 0.0 < tolerance < 1.0:
             raise ParameterError(f"tolerance = {tolerance:g}: it must lie between 0 and 1")
         if solver not in SOLVERS:

@@ -1,0 +1,49 @@
+"""What scripts give, checked by kind: a wrong one is a line, and no traceback from inside."""
+
+from collections.abc import Iterable, Mapping
+from os import PathLike
+
+from herringbone.core.errors import ParameterError
+
+_SHOWN = 40
+
+
+def check_mapping(name: str, given: object, example: str) -> None:
+    """Refuse what has no names; raises ParameterError.
+
+    Args:
+        name: of the argument.
+        given: its value; None is none.
+        example: of one that is right.
+    """
+    if given is not None and not isinstance(given, Mapping):
+        raise ParameterError(f"{name} = {_cut(given)}: it takes values by name, such as {example}")
+
+
+def check_several(name: str, given: object) -> None:
+    """Refuse one number or text where several are taken; raises ParameterError."""
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise ParameterError(f"{name} = {_cut(given)}: it takes several values; give [{given!r}]")
+
+
+def check_reference(name: str, given: object, taken: str) -> None:
+    """Refuse what is no name or path; raises ParameterError.
+
+    Args:
+        name: of the argument.
+        given: its value.
+        taken: what it takes, for the message.
+    """
+    if not isinstance(given, str | PathLike):
+        raise ParameterError(f"{name} = {_cut(given)}: it takes {taken}")
+
+
+def check_called(name: str, given: object) -> None:
+    """Refuse what is neither True, False nor a function; raises ParameterError."""
+    if not isinstance(given, bool) and not callable(given):
+        raise ParameterError(f"{name} = {_cut(given)}: it takes True, False or a function")
+
+
+def _cut(given: object) -> str:
+    text = repr(given)
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
