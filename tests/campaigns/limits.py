@@ -1,20 +1,27 @@
 """Predicted limits of systems with foreign parts against runs of these parts.
 
-    python -m campaigns.limits FOLDER ... [--algorithms A B ...]
+    python -m campaigns.limits FOLDER ... [--algorithms A ...] [--draw PATH=LOW:HIGH ...]
 
-in tests/; each folder is that of a system. A line for each algorithm: the limit, the frequency that
-grows there, growth in runs at shares `TRIED` of it (a power of e per macro step, of a perturbation;
-"ends" where a run ends early, "." where it decays, or grows by less than a run shows), and a
-verdict. With contact a run must not grow at the first share, and must grow at another one, or in
-the middle of a narrower band. A motion that does not repeat, as of teeth that rattle without a
-load, grows at any step, and tells nothing of the coupling. Systems of foreign parts alone are
-linear here: they decay at 0.98, and grow at 1.02 or in the middle of a narrower band.
+in tests/; each folder is that of a system, and `--draw` draws a value by the last commit, as of the
+torque that loads teeth where nothing else does. A line for each algorithm: the limit, the frequency
+that grows there, growth in runs at shares `TRIED` of it (a power of e per macro step, of a
+perturbation; "ends" where a run ends early, "." where it decays, or grows by less than a run
+shows), and a verdict. With contact a run must not grow at the first share, and must grow at another
+one, or in the middle of a narrower band. A motion that does not repeat, as of teeth that rattle
+without a load, grows at any step, and tells nothing of the coupling. Systems of foreign parts alone
+are linear here: they decay at 0.98, and grow at 1.02 or in the middle of a narrower band.
+
+Beside a part with a clock, steps that do not divide its period have no common one with it, and no
+prediction: runs are made at the told step, and at the last one before it that does. Growth that is
+told and slower than a run shows is no verdict.
 """
 
 import argparse
 import math
-from collections.abc import Mapping
+import random
+from collections.abc import Mapping, Sequence
 
+from fuzz.campaign import last_commit
 from support.foreign.stranger_limits import limits
 
 from campaigns.plans import tell
@@ -128,18 +135,33 @@ def compared(
     return f"{what}  {told(rates)}", contact_verdict(rates, expected)
 
 
+def drawn(ranges: Sequence[str]) -> dict[str, float]:
+    """Values by path, of PATH=LOW:HIGH, by the last commit."""
+    chance = random.Random(last_commit())
+    found = {}
+    for text in ranges:
+        path, _, ends = text.partition("=")
+        low, high = map(float, ends.split(":"))
+        found[path] = chance.uniform(low, high)
+    return found
+
+
 def main() -> int:
     """Print the table; 0 if all is as predicted."""
     parser = argparse.ArgumentParser(prog="campaigns.limits", description=__doc__)
     parser.add_argument("folders", nargs="+")
     parser.add_argument("--algorithms", nargs="*", help="default: all")
+    parser.add_argument("--draw", nargs="*", default=[], metavar="PATH=LOW:HIGH")
     options = parser.parse_args()
+    values = drawn(options.draw)
+    if values:
+        tell(", ".join(f"{path} = {value:.6g}" for path, value in values.items()))
     chosen = list(map(parse_algorithm, options.algorithms or [])) or default_algorithms()
     bad = 0
     for folder in options.folders:
         tell(folder)
         try:
-            with predictable(folder, None, Wishes(start_offset={}), tell) as found:
+            with predictable(folder, None, Wishes(start_offset={}, values=values), tell) as found:
                 for algorithm in chosen:
                     try:
                         row = compared(found.system, found.started, found.strangers, algorithm)

@@ -3,7 +3,6 @@
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 
-from herringbone.analysis.anatomy import value_at
 from herringbone.analysis.equilibrium import SCALE
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import EquilibriumError
@@ -98,13 +97,17 @@ def _settled(system: System, step: float) -> tuple[System, tuple[str, ...]]:
         lines.append(
             f"torques do not balance: the steady rotation speeds up by {found.acceleration:.4g} "
             f"rad/s^2, from {fastest} = {_speed(found.values[fastest]):.6g} rad/s"
-            f"{_unset(system, fastest)}"
+            f"{'' if found.declared else _unset(system, fastest)}"
         )
     if found.moved:
         lines.append(
             f"{fastest} starts at {found.values[fastest]:.6g} rad/s, where torques balance "
-            f"(given: {value_at(system, fastest):.6g} rad/s); --start {Start.REST} takes what "
-            "is given"
+            f"(given: {found.given:.6g} rad/s); --start {Start.REST} takes what is given"
+        )
+    elif found.declared:
+        lines.append(
+            f"{fastest} starts at {found.given:.6g} rad/s, as {found.declared} declares, and "
+            f"nothing else says; --set {fastest}=... does"
         )
     parts = tuple(replace(part, approach=found.approaches.get(part.name)) for part in system.parts)
     return replace(system, parts=parts).with_values(found.values), tuple(lines)

@@ -72,7 +72,7 @@ class Growth:
         return share * self.fast_change < _SLOW
 
 
-def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
+def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0, rigid: float = RIGID) -> Growth:
     """The fastest growing motion of one macro step [s], from the eigenvalues of its matrix.
 
     Args:
@@ -80,19 +80,20 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
         step: its length [s].
         noise: error of the matrix over its size; eigenvalues that it may have moved from 1 are left
             out like 1 itself.
+        rigid: eigenvalues this close to 1 are left out.
     """
     if matrix.size == 0:
         return Growth(0.0, 0.0, 0.0)
     with one_blas_thread():
         eigenvalues = np.linalg.eigvals(matrix)
-        found = _fastest(eigenvalues[~_free(eigenvalues, noise)], step)
+        found = _fastest(eigenvalues[~_free(eigenvalues, noise, rigid)], step)
         # Errors can only make it less; and they bring nothing here from 1 that is so far away.
         if noise == 0.0 or found.radius <= 1.0 + GROWTH or _is_far(found, step):
             return found
         if _is_sure(matrix, _eigenvalue(found, step), noise):
             return found
         eigenvalues, known = _with_errors(matrix, noise)
-    moving = (np.abs(eigenvalues - 1.0) > known) & ~_free(eigenvalues, noise)
+    moving = (np.abs(eigenvalues - 1.0) > known) & ~_free(eigenvalues, noise, rigid)
     return _fastest(eigenvalues[moving], step)
 
 
@@ -123,10 +124,10 @@ def pair_growth(matrix: np.ndarray, found: Growth | None, step: float) -> float 
     return float(pair.mean().real)
 
 
-def _free(eigenvalues: np.ndarray, noise: float) -> np.ndarray:
-    """(n,) True for the free rotation of the shafts."""
+def _free(eigenvalues: np.ndarray, noise: float, rigid: float) -> np.ndarray:
+    """(n,) True for the free rotation of the shafts, and for what is so close to 1."""
     off = eigenvalues - 1.0
-    found = np.abs(off) <= RIGID
+    found = np.abs(off) <= rigid
     pair = np.argsort(np.abs(off))[:2]
     largest = np.abs(off[pair]).max(initial=0.0)
     if noise and len(pair) == 2 and largest < _SPLIT and abs(off[pair].mean()) < _EVENLY * largest:

@@ -30,8 +30,8 @@ class Laboratory:
         start: (n,) values of the inputs at the start.
         step: of the trials [s].
         start_time: of the experiment [s].
-        onward: how inputs move on from the start; None: all stay. Angles that turn are told
-            relative to that motion, 0 at the start.
+        onward: how inputs move on from the start; None: all stay. Angles that turn, and what
+            speeds gain, are told relative to that motion, 0 at the start.
 
     Attributes:
         restores: True if saving and restoring gives equal bits; False if not, None if the part does
@@ -58,7 +58,7 @@ class Laboratory:
         self.inputs, self.outputs, self.start = tuple(inputs), tuple(outputs), np.array(start)
         self.step, self.start_time = step, start_time
         self._make, self._onward = make, onward
-        self.turning = tuple(np.flatnonzero(onward.rates).tolist()) if onward else ()
+        self.turning = onward.turning if onward else ()
         self._trial: Trial | None = None
         self._handle: int | None = None
         self._rest: dict[float, np.ndarray] = {}
@@ -133,14 +133,12 @@ class Laboratory:
             Refused: the part does.
         """
         count, found = len(self.inputs), []
-        turning = np.zeros(signals.shape[1] - count)
-        if self._onward and turning.size:
-            turning[:count] = self._onward.rates
+        orders = signals.shape[1] // count - 1 if count else 0
         try:
             trial = self.at_start()
             for given in signals:
-                self._give(trial, given[:count], 0.0 if turning.size else h)
-                trial.set_derivatives(given[count:] + turning)
+                self._give(trial, given[:count], 0.0 if orders else h)
+                trial.set_derivatives(given[count:] + self._onward_derivatives(trial, orders))
                 trial.step(h)
                 found.append(np.concatenate([trial.values(), trial.rates() if rated else []]))
         except Refused:
@@ -178,10 +176,15 @@ class Laboratory:
             trial.step(h / pieces)
 
     def _give(self, trial: Trial, values: np.ndarray, h: float) -> None:
-        """Set inputs for a step of h [s], with the angles that have turned on since the start."""
+        """Set inputs for a step of h [s], with what shafts have moved on by since the start."""
         if self._onward:
-            values = values + self._onward.turned(trial.time - self.start_time, h)
+            values = values + self._onward.moved(trial.time - self.start_time, h)
         trial.set(values)
+
+    def _onward_derivatives(self, trial: Trial, orders: int) -> np.ndarray:
+        if not self._onward:
+            return np.zeros(orders * len(self.inputs))
+        return self._onward.derivatives(trial.time - self.start_time, orders)
 
     def _instance(self) -> Trial:
         stop = self.start_time + 1e6 * self.step

@@ -26,9 +26,7 @@ class ApproachedPart(PartAdapter):
     ) -> None:
         """Initialise it earlier, and step it up to the start time; raises FmuError."""
         names = [u.name for u in self._approach.inputs]
-        begin = self._approach.held(-self._approach.duration, 0.0)
-        for name, value in zip(names, begin, strict=True):
-            self.part.set(name, float(value))
+        begin_at(self.part, self._approach)
         early = start_time - self._approach.duration
         try:
             trial = Trial(self.part, names, [], early, stop_time, tolerance)
@@ -49,6 +47,13 @@ class ApproachedPart(PartAdapter):
 def approached(part: Part, given: Approach | None) -> Part:
     """The part, with its approach in front of it if it is stepped before the run."""
     return ApproachedPart(part, given) if given and given.duration else part
+
+
+def begin_at(part: Part, given: Approach) -> None:
+    """Set what a part begins with, before it is initialised: some take their angle from that."""
+    begin = given.held(-given.duration, 0.0)
+    for u, value in zip(given.inputs, begin, strict=True):
+        part.set(u.name, float(value))
 
 
 def approach(trial: Trial, given: Approach) -> None:

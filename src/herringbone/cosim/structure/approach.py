@@ -22,6 +22,9 @@ import numpy as np
 
 _TAPERED = 10
 """Halvings of the last step: what is held over the last piece is what stands at its end."""
+_SOON, _LITTLE = 0.5, 0.05
+"""How long trials last at most [s], and what shafts may gain in that time, over their speed, that
+is taken for none: what is found is told of one speed then. Else its end would be a jolt."""
 _WHOLE = 1e-9
 _MEAN = 0.5
 
@@ -49,27 +52,37 @@ class SteadyInput:
 
 @dataclass(frozen=True)
 class Onward:
-    """How inputs move on from the start of the run: n of them, angles turn on, all others stay.
-
-    Speeds stay, too, whatever speeds the shafts up: what is found on the way is told of one speed.
+    """How n inputs move on from the start of the run: shafts turn on, and may speed up.
 
     Attributes:
-        still: (n,) inputs that stay; 0 for angles that turn.
+        still: (n,) inputs at the start; 0 for angles that turn.
         angles: (n,) angles that turn, at the start; 0 for all others.
-        rates: (n,) of these [rad/s].
-        share: of each step at which they are taken, see `Approach`.
+        rates: (n,) of angles [rad/s] and of speeds [rad/s^2]; 0 for what stays.
+        accelerations: (n,) of angles [rad/s^2]; 0 for all others.
+        share: of each step at which angles are taken, see `Approach`.
         longest: step [s] in which an angle that is held is no jolt.
+        turning: numbers of the angles that turn.
     """
 
     still: np.ndarray
     angles: np.ndarray
     rates: np.ndarray
+    accelerations: np.ndarray
     share: float
     longest: float
+    turning: tuple[int, ...]
 
-    def turned(self, t: float, h: float) -> np.ndarray:
-        """(n,) angles that turn, for a step from t [s] of length h [s]; 0 for all others."""
-        return self.angles + self.rates * (t + self.share * h)
+    def moved(self, t: float, h: float) -> np.ndarray:
+        """(n,) angles that turn and what speeds gain, for a step from t [s] of length h [s]."""
+        at = np.full(self.still.size, t + 0.5 * h)
+        at[list(self.turning)] = t + self.share * h
+        return self.angles + self.rates * at + 0.5 * self.accelerations * at * at
+
+    def derivatives(self, t: float, orders: int) -> np.ndarray:
+        """(orders n,) of the same at a time [s]: first, second, ..."""
+        known = [self.rates + self.accelerations * t, self.accelerations]
+        none = [np.zeros(self.still.size)] * orders
+        return np.concatenate([*known, *none][:orders]) if orders else np.empty(0)
 
 
 @dataclass(frozen=True)
@@ -124,15 +137,21 @@ class Approach:
 
     @cached_property
     def onward(self) -> "Onward":
-        """How inputs move on from the start."""
-        values, rates, _, _, turning, _ = self._columns
+        """How inputs move on from the start: shafts that hardly speed up turn on evenly."""
+        values, rates, accelerations, _, turning, _ = self._columns
+        speeds = np.where(turning, rates, values)
+        gained = _SOON * np.where(turning, accelerations, rates)
+        if np.all(np.abs(gained) <= _LITTLE * np.abs(speeds)):
+            rates, accelerations = np.where(turning, rates, 0.0), np.zeros_like(accelerations)
         longest = self.step if self.share == _MEAN and self.tapered else math.inf
         return Onward(
             np.where(turning, 0.0, values),
             np.where(turning, values, 0.0),
-            np.where(turning, rates, 0.0),
+            rates,
+            accelerations,
             self.share,
             longest if turning.any() else math.inf,
+            tuple(np.flatnonzero(turning).tolist()),
         )
 
     def turned(self, rate: float, acceleration: float) -> float:

@@ -3,7 +3,7 @@
 from contextlib import suppress
 
 from herringbone.analysis.equilibrium import even_acceleration
-from herringbone.analysis.rigid_rotation import names_of_states
+from herringbone.analysis.rigid_rotation import names_of_states, rigid_rotation
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError
 from herringbone.cosim.structure.system import System
@@ -56,6 +56,8 @@ def turned_back(system: System) -> System:
     twin = Twin(known_parts(system))
     x = twin.state
     rates = twin.rhs(0.0, x)
+    if (faster := rigid_rotation(twin, x)).any():  # also of shafts that begin to turn
+        rates = twin.rhs(0.0, x + faster) - rates
     turning = [i for i in twin.turning if rates[i] != 0.0]
     if not turning:
         return system

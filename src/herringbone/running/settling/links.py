@@ -101,6 +101,20 @@ class Links:
             found.append(SteadyInput(name, output.value, rate, second, start, output.is_speed))
         return found
 
+    def declared_speed(self, motion: OwnMotion) -> tuple[float, str]:
+        """Speed of the fastest shaft [rad/s] by what strangers declare at their flanges, and where.
+
+        Of those that declare one, the first; 0 and "" where none does.
+        """
+        for (name, given), (source, output) in self._source.items():
+            own = motion.outputs.get(f"{source}.{output}")
+            part = self._strangers.get(name)
+            if part is None or own is None or not (own.is_speed and own.by_acceleration):
+                continue
+            if begin := float(part.begin[part.inputs.index(given)]):
+                return begin / own.by_acceleration, f"{name}.{given}"
+        return 0.0, ""
+
     def sizes(self, answers: np.ndarray) -> np.ndarray:
         """(k,) largest answers of the same unit."""
         units = [self._strangers[n].units.get(o, "") for n, o in self._answers]

@@ -1,6 +1,6 @@
 """What a system of components gives to others in a steady motion in which these answer."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -11,12 +11,14 @@ from herringbone.analysis.equilibrium import answered_equilibrium
 from herringbone.analysis.rigid_rotation import names_of_states
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core.part import Part
+from herringbone.cosim.structure.approach import Approach
 from herringbone.cosim.structure.rates import rate_of
 from herringbone.cosim.structure.system import System, Values
 
 ANGLE, SPEED = "rad", "rad/s"
+_LOADS = "N", "N.m"
 _STANDS = 1e-9
-"""Speed of an angle that stands [rad/s]."""
+"""Speed [rad/s] and acceleration [rad/s^2] of an angle that stands."""
 
 
 class Output(NamedTuple):
@@ -47,6 +49,7 @@ class OwnMotion:
         angles: angles that turn, by path of the state.
         fastest: path of the speed of the fastest shaft; "" where the drivetrain cannot turn as a
             whole, or something holds its speed.
+        loads: largest force and torque that own parts exchange, by unit.
     """
 
     values: Values
@@ -54,24 +57,35 @@ class OwnMotion:
     outputs: Mapping[str, Output]
     angles: Mapping[str, Output]
     fastest: str
+    loads: Mapping[str, float]
 
     def at_acceleration(self, acceleration: float) -> "OwnMotion":
         """The same at another acceleration [rad/s^2]; own parts do not balance then."""
         return replace(self, acceleration=acceleration)
 
-    def turned_on(self, angle: Callable[[float, float], float]) -> "OwnMotion":
-        """The same with angles further by what a function makes of rate and second rate."""
-        found = {
-            path: output._replace(value=output.value + angle(*self.rates(output)))
-            if self.turns(path)
-            else output
-            for path, output in self.outputs.items()
-        }
-        return replace(self, outputs=found)
+    def approached(self, acceleration: float, before: Approach, now: Approach) -> "OwnMotion":
+        """The same with angles as another acceleration [rad/s^2], or another way, turns them.
+
+        Args:
+            acceleration: own parts do not balance at another one.
+            before: way of shafts by which this motion has its angles.
+            now: by which it gets them.
+        """
+        other = self.at_acceleration(acceleration)
+
+        def turned(output: Output) -> float:
+            if output.is_speed:
+                return output.value
+            further = now.turned(*other.rates(output)) - before.turned(*self.rates(output))
+            return output.value + further
+
+        found = {path: y._replace(value=turned(y)) for path, y in self.outputs.items()}
+        return replace(other, outputs=found)
 
     def turns(self, path: str) -> bool:
-        """If an output is an angle that turns."""
-        return abs(self.outputs[path].speed) > _STANDS
+        """If an output is an angle that turns, or begins to: one that stands may speed up."""
+        output = self.outputs[path]
+        return not output.is_speed and max(map(abs, self.rates(output))) > _STANDS
 
     def rates(self, output: Output) -> tuple[float, float]:
         """Rate and second rate of an output."""
@@ -94,7 +108,8 @@ def own_motion(system: System, answers: Answers, taken: Sequence[str]) -> OwnMot
     found = answered_equilibrium(twin, answers)
     x, turned = found.states, found.states + found.rotation
     speeds = {path: _speed(twin, path) for path in taken}
-    columns = list(dict.fromkeys([*taken, *filter(None, speeds.values())]))
+    units = _units_of_loads(twin)
+    columns = list(dict.fromkeys([*taken, *filter(None, speeds.values()), *units]))
     at, faster = (
         dict(
             zip(columns, map(float, twin.observe(np.zeros(1), s[:, None], columns)[0]), strict=True)
@@ -115,7 +130,18 @@ def own_motion(system: System, answers: Answers, taken: Sequence[str]) -> OwnMot
     }
     rotation = np.abs(found.rotation)
     fastest = names[int(np.argmax(rotation))] if rotation.any() else ""
-    return OwnMotion(found.values, found.acceleration, outputs, angles, fastest)
+    loads = dict.fromkeys(_LOADS, 0.0)
+    for path, unit in units.items():
+        loads[unit] = max(loads[unit], abs(at[path]))
+    return OwnMotion(found.values, found.acceleration, outputs, angles, fastest, loads)
+
+
+def _units_of_loads(twin: Twin) -> dict[str, str]:
+    """Units of forces and torques that parts give each other, by path."""
+    parts = twin.network.parts
+    given = dict.fromkeys((parts[c.source], c.output) for c in twin.network.connections)
+    units = {f"{part.name}.{name}": part.variables[name].unit for part, name in given}
+    return {path: unit for path, unit in units.items() if unit in _LOADS}
 
 
 def _speed(twin: Twin, path: str) -> str | None:

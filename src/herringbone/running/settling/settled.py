@@ -15,6 +15,9 @@ _EVENLY, _TWICE = 0.05, 2.0
 _TELLING, _SURELY = 0.16, 1.28
 """Shortest trial that tells of later times [s]; that tells what does not die out at all."""
 _EVER = 100.0
+_ALIKE = 0.8
+"""Ratio of rates of decay that two trials tell of what dies out evenly: quarters shorter than a
+period of an oscillation tell different ones."""
 _LATER = 8.0 / 3.0
 """Time of a trial over that from the end of its rise to the middle of its last quarter."""
 
@@ -56,11 +59,15 @@ def why_not(found: Settled, before: Settled, duration: float, unit: str) -> str:
     if before.worst != found.worst or duration < _TELLING:
         return ""
     straight = max(s.bend / s.change for s in (found, before)) < _EVENLY
+    straight = straight and abs(found.before - found.change) < _EVENLY * found.change
     if straight and abs(2.0 * before.moved - found.moved) < _EVENLY * found.moved:
         rate = 4.0 * found.moved / duration
         return f"goes on evenly, by {rate:.3g} {unit} a second, in the steady motion: it integrates"
     times = _time_to_settle(before, 0.5 * duration), _time_to_settle(found, duration)
     if min(times) <= _TWICE * LONGEST:
+        return ""
+    rates = _decay(before, 0.5 * duration), _decay(found, duration)
+    if min(times) <= _EVER * LONGEST and min(rates) < _ALIKE * max(rates):
         return ""
     if times[1] > _EVER * LONGEST:
         return f"does not die out in {duration:.3g} s"
@@ -69,9 +76,29 @@ def why_not(found: Settled, before: Settled, duration: float, unit: str) -> str:
     )
 
 
+def dies_out(found: Settled, before: Settled, duration: float) -> bool:
+    """If what is left would change no more, as it dies out evenly in two trials.
+
+    Args:
+        found: after this time.
+        before: after half of it.
+        duration: see above [s].
+    """
+    slower, faster = sorted((_decay(before, 0.5 * duration), _decay(found, duration)))
+    if before.worst != found.worst or slower <= 0.0 or slower < _ALIKE * faster:
+        return False
+    return found.change**2 <= CHANGES * found.before
+
+
 def _time_to_settle(found: Settled, duration: float) -> float:
     """Time [s] of a trial in which it would settle, by how it dies out in this one; 0: not told."""
     if found.change >= found.before:
         return math.inf if duration >= _SURELY else 0.0
-    rate = math.log(found.before / found.change) / (0.25 * duration)
-    return duration + _LATER * math.log(max(found.change / CHANGES, 1.0)) / rate
+    return duration + _LATER * math.log(max(found.change / CHANGES, 1.0)) / _decay(found, duration)
+
+
+def _decay(found: Settled, duration: float) -> float:
+    """Rate [1/s] at which it dies out from one quarter to the next; 0: it does not."""
+    if not 0.0 < found.change < found.before:
+        return 0.0
+    return math.log(found.before / found.change) / (0.25 * duration)

@@ -9,16 +9,20 @@ from herringbone.core.part import Part
 from herringbone.cosim.signature import Kind, Signature
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.trial import Trial
+from herringbone.cosim.starting.approached_part import begin_at
 from herringbone.cosim.structure.approach import Approach, SteadyInput
 from herringbone.cosim.structure.rates import rate_of
-from herringbone.running.settling.settled import CHANGES, LONGEST, Settled, why_not
+from herringbone.running.settling.settled import CHANGES, LONGEST, Settled, dies_out, why_not
 
 _MOST_STEPS = 8192
 """Of a trial; longer ones take longer steps."""
 _SHARES = {InputRule.MEAN: 0.5, InputRule.START: 0.0, InputRule.END: 1.0}
 _CURVED = 5e-3
 """As `CHANGES`, about a straight line, of what has settled before: drag that rises with speed."""
-_NOTHING = {"m": 1e-12, "rad": 1e-9, "m/s": 1e-9, "rad/s": 1e-6, "N": 1e-6, "N.m": 1e-6}
+_NOTHING = {"m": 1e-12, "rad": 1e-9, "m/s": 1e-9, "rad/s": 1e-6, "N": 2.0, "N.m": 2.0}
+"""Answers are no smaller, by unit, where changes are seen against them: of a torque, 1e-3 N m."""
+_OF_LOADS, _NO_LOAD = 0.01, 1e-3
+"""The same as a share of the loads in a drivetrain, if they are none of rounding [N, N m]."""
 _WATCHED = 200
 """Points of each quarter that are looked at."""
 
@@ -47,6 +51,7 @@ class Stranger:
         name, inputs, outputs, begin, units: see above.
         turning: outputs that are angles with a rate.
         at_once: it has no memory, and answers at once.
+        least: sizes by unit below which nothing counts.
     """
 
     def __init__(
@@ -60,7 +65,7 @@ class Stranger:
         units: Mapping[str, str],
     ) -> None:
         self.name, self.inputs, self.outputs, self.begin = part.name, inputs, outputs, begin
-        self.units = units
+        self.units, self.least = units, dict(_NOTHING)
         self._make, self._signature = make, signature
         self.at_once = signature.kind in {Kind.ELEMENT, Kind.SOURCE}
         self.turning = frozenset(
@@ -81,6 +86,11 @@ class Stranger:
         columns = [self._signature.inputs.index(name) for name in self.inputs]
         return np.nan_to_num(self._signature.feedthrough)[np.ix_(rows, columns)]
 
+    def compare_with(self, loads: Mapping[str, float]) -> None:
+        """Take loads of own parts, by unit, as what answers that die out are seen against."""
+        seen = {unit: _OF_LOADS * load for unit, load in loads.items() if load > _NO_LOAD}
+        self.least = _NOTHING | seen
+
     def approach(
         self, steady: Sequence[SteadyInput], duration: float, step: float, *, gradual: bool
     ) -> Approach:
@@ -92,7 +102,9 @@ class Stranger:
 
     def settled(self, given: Approach) -> Settled:
         """What it comes to; raises FmuError, NoSettledStartError."""
-        trial = Trial(self._make(), self.inputs, self.outputs, -given.duration, LONGEST)
+        part = self._make()
+        begin_at(part, given)
+        trial = Trial(part, self.inputs, self.outputs, -given.duration, LONGEST)
         try:
             direct = self.feedthrough()
             first = -0.5 * given.duration
@@ -148,22 +160,34 @@ class Stranger:
     def sizes(self, values: np.ndarray) -> np.ndarray:
         """(m,) largest values of the same unit."""
         units = [self.units.get(n, "") for n in self.outputs]
-        largest = {u: _NOTHING.get(u, 1e-9) for u in units}
+        largest = {u: self.least.get(u, 1e-9) for u in units}
         for value, unit in zip(values, units, strict=True):
             largest[unit] = max(largest[unit], abs(float(value)))
         return np.array([largest[unit] for unit in units])
 
-    def is_settled(self, found: Settled, before: Settled | None, *, known: bool) -> bool:
-        """If nothing changes any more but evenly, as it did in half the time.
+    def answered(self, found: Settled) -> bool:
+        """If it answered anything on its way, so that its time to settle is known by that."""
+        least = CHANGES * self.sizes(np.zeros(len(found.peak)))
+        return bool(np.any((found.peak > least)[self._watched]))
+
+    def is_settled(
+        self, found: Settled, before: Settled | None, duration: float, *, known: bool
+    ) -> bool:
+        """If nothing changes any more but evenly, as it did in half the time, or dies out.
 
         Args:
-            found: after some time.
+            found: after this time [s].
             before: after half of it; None: not tried.
+            duration: see above.
             known: it settles in this time under another motion.
         """
         if found.change <= CHANGES or (known and found.bend <= _CURVED):
             return True
-        if before is None or found.bend > CHANGES:
+        if before is None:
+            return False
+        if dies_out(found, before, duration):
+            return True
+        if found.bend > CHANGES:
             return False
         off = np.abs(found.outputs - before.outputs) / self.sizes(found.outputs)
         return bool(np.all(off[self._watched] <= CHANGES))

@@ -90,3 +90,11 @@ def test_what_is_no_free_rotation_has_no_mean():
     """Too far apart for errors, or another motion."""
     assert pair_growth(_turning(2e-6, 1e-6), None, STEP) is None
     assert pair_growth(_turning(2e-6, 4e-8), Growth(1.2, 300.0, 1.2), STEP) is None
+
+
+def test_slow_growth_is_left_out_up_to_what_is_asked():
+    """Growth by 3e-5 a step, as a part's own inner steps make it: told, unless it is left out."""
+    matrix = np.eye(1 + SIZE)
+    matrix[0, 0], matrix[1:, 1:] = 1.0 + 3e-5, matrix_of((0.999 * np.exp(2.0j),))
+    assert growth_of(matrix, STEP).radius == pytest.approx(1.0 + 3e-5, rel=KNOWN)
+    assert growth_of(matrix, STEP, rigid=4e-5).radius == pytest.approx(0.999, rel=KNOWN)

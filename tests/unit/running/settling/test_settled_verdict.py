@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from herringbone.running.settling.settled import CHANGES, LONGEST, Settled, why_not
+from herringbone.running.settling.settled import CHANGES, LONGEST, Settled, dies_out, why_not
 
 
 def trial(answer, duration):
@@ -48,3 +48,33 @@ def test_oscillations():
     seconds = float(slow.split("some ")[1].split()[0])
     # Of the last quarter of a trial T: 0.2 exp(-T/4) < 5e-4.
     assert seconds == pytest.approx(4.0 * np.log(0.2 / CHANGES), rel=0.4)
+
+
+def test_an_oscillation_slower_than_a_quarter_of_a_trial():
+    """A car on its side shaft: 3.3/s, 1.4 Hz. Quarters hold parts of a period: nothing is told."""
+    answer = lambda t: np.exp(-3.3 * t) * np.cos(9.0 * t)  # noqa: E731
+    for duration in (0.16, 0.32, 0.64, 1.28, 2.56):
+        assert told(answer, duration) == ""
+
+
+@pytest.mark.parametrize("rate", [20.0, 60.0])
+def test_what_dies_out_evenly_is_settled_by_what_would_be_left(rate):
+    """The quarter after a trial T changes it by 1 - exp(-rate T/4) of its value at the end of T/2
+    times exp(-rate T/4): within `CHANGES` of its size when it is called settled, and not before."""
+    answer = lambda t: 1.0 + np.exp(-rate * t)  # noqa: E731
+    durations = [0.02 * 2.0**n for n in range(9)]
+
+    def settled(duration):
+        return dies_out(trial(answer, duration), trial(answer, 0.5 * duration), duration)
+
+    first = next(duration for duration in durations if settled(duration))
+    left = np.exp(-0.5 * rate * first)
+    assert left < CHANGES / (1.0 - np.exp(-0.25 * rate * first)) * 1.1
+    assert np.exp(-0.25 * rate * first) > CHANGES  # a trial of half the time leaves too much
+
+
+def test_what_dies_out_in_two_ways_is_not_settled_by_the_first():
+    """The slow part, 10/s, is left when the quick one has gone: the rates of two trials differ."""
+    answer = lambda t: 1.0 + np.exp(-200.0 * t) + 0.1 * np.exp(-10.0 * t)  # noqa: E731
+    for duration in (0.02, 0.04, 0.08, 0.16, 0.32):
+        assert not dies_out(trial(answer, duration), trial(answer, 0.5 * duration), duration)

@@ -195,3 +195,33 @@ def test_why_there_is_none(tmp_path):
         "its own); the load rises from zero over "
     )
     assert any(note.startswith(told) for note in notes)
+
+
+def test_from_rest_what_does_not_balance_speeds_up(driven):
+    """Newton's law, as above; on the way the motor's shaft turns back by a t^2 / 2, and begins
+    where it declares. What is predicted is linear at angles near 0."""
+    wishes = Wishes(values={"motor.torque_set": TORQUE}, start_offset={})
+    started = prepared(driven, None, wishes, trial_step=STEP).system
+    way = started.part("motor").approach
+    (angle,) = (u for u in way.inputs if u.name == "flange.phi")
+    pinion, wheel = (2.0 * of("gear_mesh", f"{gear}.inertia") for gear in ("pinion", "wheel"))
+    inertia = MOTOR + pinion + (wheel + of("load_motor", "inertia")) / 9.0
+    assert angle.acceleration == pytest.approx((TORQUE - 200.0) / inertia, abs=0.2 / inertia)
+    assert angle.rate == pytest.approx(0.0, abs=1e-9)
+    begin = dict(zip((u.name for u in way.inputs), way.held(-way.duration, 0.0), strict=True))
+    # The twist of the load's coupling is left, 600 / 3e5 rad times the ratio, and that of teeth.
+    assert begin["flange.phi"] == pytest.approx(0.006, abs=1e-3)
+    assert abs(angle.value - begin["flange.phi"]) > 0.1
+    assert abs(values_of(turned_back(started), "gear_mesh")["gearbox.gear_mesh.angle"]) < 0.01
+
+
+def test_speed_that_a_foreign_part_declares(driven):
+    """Where nothing else says one; a line tells whose it is. A speed that is set wins."""
+    values = {"motor.torque_set": TORQUE, "motor.flange.w": SPEED}
+    for given, speed in (({}, SPEED), ({"gear_mesh.der(angle)": 0.5 * SPEED}, 0.5 * SPEED)):
+        wishes = Wishes(values=values | given, start_offset={})
+        system, _, notes = prepared(driven, None, wishes, trial_step=STEP)
+        found = values_of(system, "gear_mesh")["gearbox.gear_mesh.der(angle)"]
+        assert found == pytest.approx(speed, rel=1e-9)
+        told = any("as motor.flange.w declares" in note for note in notes)
+        assert told is not bool(given)
