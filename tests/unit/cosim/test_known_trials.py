@@ -6,7 +6,8 @@ import pytest
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component
 from herringbone.core import Instance
-from herringbone.core.places.paths import CACHE_VARIABLE, cache_root
+from herringbone.core.caching.tried import forget_tried, tried_folder
+from herringbone.core.places.paths import CACHE_VARIABLE
 from herringbone.cosim.adapter import WithoutStates
 from herringbone.cosim.signature import Laboratory
 from herringbone.cosim.signature.known_trials import KnownTrials
@@ -77,10 +78,17 @@ def test_trials_follow_what_decides_them(other):
     assert told(make, **other)[2] == TESTED + 4
 
 
+def test_what_is_forgotten_is_tried_anew():
+    make = Rotors()
+    answers, facts, made = told(make)
+    forget_tried()
+    assert told(make) == (answers, facts, made)
+
+
 def test_nothing_is_kept_without_a_name_for_it():
     make = Rotors()
     assert told(make, content=())[2] == told(make, content=())[2] == TESTED + 4
-    assert not (cache_root() / "trials").exists()
+    assert not tried_folder("trials").exists()
 
 
 def test_of_what_does_not_repeat_nothing_is_kept():
@@ -88,7 +96,7 @@ def test_of_what_does_not_repeat_nothing_is_kept():
     _, facts, _ = told(make)
     assert not facts[1]
     assert "in a second instance" in facts[2]
-    assert not (cache_root() / "trials").exists()
+    assert not tried_folder("trials").exists()
     assert told(make)[2] == TESTED + 4
 
 
@@ -159,7 +167,7 @@ def test_another_trial_shows_that_a_part_is_not_the_one_that_it_was(caplog):
 def test_a_damaged_file_is_told_and_made_anew(caplog):
     make = Rotors()
     answers, facts, made = told(make)
-    (file,) = (cache_root() / "trials").iterdir()
+    (file,) = tried_folder("trials").iterdir()
     file.write_bytes(file.read_bytes()[:-8])
     assert told(make) == (answers, facts, made)
     assert "is damaged; it is made anew" in caplog.text

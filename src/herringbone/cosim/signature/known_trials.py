@@ -15,7 +15,7 @@ import numpy as np
 
 from herringbone.core.caching.arrays import Kept, keep_arrays, kept_arrays
 from herringbone.core.caching.keys import digest_of, kernels_key
-from herringbone.core.places.paths import cache_root
+from herringbone.core.caching.tried import tried_folder
 from herringbone.cosim.signature.first_steps import FirstSteps
 from herringbone.cosim.signature.trial import Refused
 
@@ -44,7 +44,7 @@ class KnownTrials:
     def __init__(self, content: Sequence[str], start: str) -> None:
         self._file = None
         if content:
-            self._file = cache_root() / _FOLDER / digest_of(kernels_key(*_SOURCES), *content, start)
+            self._file = tried_folder(_FOLDER) / digest_of(kernels_key(*_SOURCES), *content, start)
         self._known: dict[str, Kept] = kept_arrays(self._file) if self._file else {}
         self._saved, self._unkept, self._asked = len(self._known), 0, Counter[str]()
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key
+from herringbone.core.caching.tried import tried_folder
 from herringbone.core.part import Part
-from herringbone.core.places.paths import cache_root
 
 _SOURCES = "herringbone.running.foreign.start_inputs", "herringbone.cosim.fmu.opening"
 
@@ -37,7 +37,7 @@ def known_start_inputs(
     if not content:
         return start_inputs(make(), inputs)
     key = digest_of(kernels_key(*_SOURCES), *content, repr(tuple(inputs)))
-    file = cache_root() / "starts" / f"{key}.json"
+    file = tried_folder("inputs") / f"{key}.json"
     if (known := kept(file)) is None:
         keep(file, known := start_inputs(make(), inputs).tolist())
     return np.array(known, dtype=float)
