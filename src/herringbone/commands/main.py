@@ -42,6 +42,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         with as_command(), _housing(options) as housing:
+            if getattr(options, "fresh", False):
+                from herringbone.core.caching.tried import (  # noqa: PLC0415 (looks at all sources)
+                    forget_tried,
+                )
+
+                forget_tried()
             code = options.command(options)
             for remark in housing.remarks:  # a run has told its own
                 say(f"note: {remark}")

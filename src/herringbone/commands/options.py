@@ -76,6 +76,11 @@ def add_cells(sub: argparse.ArgumentParser) -> None:
         "--call-deadline", type=float, metavar="SECONDS",
         help="longest time that a call of an FMU in a child process may take; 60 s if not given",
     )  # fmt: skip
+    sub.add_argument(
+        "--fresh", action="store_true",
+        help="forget what trials of foreign FMUs told before, of all, and make them anew: of FMUs "
+        "that read what their files do not show",
+    )  # fmt: skip
 
 
 def add_start_values(sub: argparse.ArgumentParser, varied: str = "") -> None:

@@ -6,13 +6,18 @@ from pathlib import Path
 from herringbone.core.caching.keys import sources_key
 from herringbone.core.caching.remembered import content_key
 from herringbone.core.places.files import is_file
-from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.cosim.structure.system import PartSpec, System, Values
 
 
 def contents_of(spec: PartSpec) -> Iterator[str]:
     """The FMU or component of a part, its values, and the files that these name."""
     yield f"{spec.component} {sources_key()}" if spec.fmu is None else digest_of_file(spec.fmu)
-    yield from values_of(spec)
+    yield from values_of(spec.values)
+
+
+def contents_of_trials(spec: PartSpec) -> tuple[str, ...]:
+    """What trials of a part depend on, besides where they begin: its name stands in messages."""
+    return str(spec.name), *contents_of(spec)
 
 
 def contents_of_system(system: System) -> Iterator[str]:
@@ -24,9 +29,9 @@ def contents_of_system(system: System) -> Iterator[str]:
         yield " ".join(pair)
 
 
-def values_of(spec: PartSpec) -> Iterator[str]:
+def values_of(values: Values) -> Iterator[str]:
     """Values of a part; the content of a file in place of its name."""
-    for name, value in sorted(spec.values.items()):
+    for name, value in sorted(values.items()):
         if isinstance(value, str) and value and is_file(Path(value)):
             yield f"{name} {digest_of_file(Path(value))}"
         else:

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from herringbone.analysis.stability.steps.step_limits import StepLimits
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key, versions_of
-from herringbone.core.places.paths import cache_root
+from herringbone.core.caching.tried import tried_folder
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.running.content import contents_of_system
@@ -37,7 +37,7 @@ class KnownLimits:
             simulated: with those that runs show.
             find: finds them; what it raises is raised.
         """
-        file = cache_root() / "limits" / f"{self._key(algorithm, simulated)}.json"
+        file = tried_folder("limits") / f"{self._key(algorithm, simulated)}.json"
         if (known := kept(file)) is not None:
             bands = tuple((low, high) for low, high in known.pop("unstable_bands"))
             return StepLimits(unstable_bands=bands, **known)

@@ -11,6 +11,7 @@ from herringbone.commands import output
 from herringbone.commands.main import BAD_INPUT, EXIT_CODES, main
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import HerringboneError, OutcomeKind
+from herringbone.core.places.paths import CACHE_VARIABLE
 
 
 def shown(capsys, *arguments, code=0):
@@ -207,6 +208,18 @@ def test_export_of_bad_input(capsys, tmp_path):
 def test_modal_data_belong_to_the_test_of_a_housing(capsys):
     said = refused(capsys, "check", "housing.fmu", "--against", "data")
     assert "--against belongs to the test of a housing; add --as housing" in said
+
+
+def test_what_trials_told_is_forgotten_where_that_is_asked(capsys, tmp_path, monkeypatch):
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    for kind in ("tried/limits", "answers", "kernels"):
+        (tmp_path / kind).mkdir(parents=True)
+    refused(capsys, "stability", "nowhere")
+    assert (tmp_path / "tried" / "limits").is_dir()
+    refused(capsys, "stability", "nowhere", "--fresh")
+    left = {place.name for place in tmp_path.iterdir()}
+    assert "tried" not in left
+    assert "kernels" in left
 
 
 def test_cycles_are_seldom_searched_while_a_command_runs(monkeypatch, capsys):

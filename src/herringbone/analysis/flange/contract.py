@@ -53,6 +53,7 @@ def check_flanges(
     flanges: Sequence[str] = (),
     longest: int | None = None,
     progress: Report = lambda what: None,
+    content: Sequence[str] = (),
 ) -> list[Finding]:
     """Test a part against the contract of a role.
 
@@ -63,6 +64,7 @@ def check_flanges(
         flanges: which variables they are: `port`, or `tau=name,phi=name,w=name`; empty: guessed.
         longest: steps that a trial may have, see `extent`; as many as the tests want if None.
         progress: called with what begins.
+        content: see `Laboratory`.
 
     Returns:
         One finding a test; if variables are wrong, nothing else is tested.
@@ -85,7 +87,7 @@ def check_flanges(
         why = "it can be instantiated once only, and runs in this process"
         return [*findings, *_nothing(why, role)]
     try:
-        with Laboratory(make, inputs, outputs, start, step) as lab:
+        with Laboratory(make, inputs, outputs, start, step, content=content) as lab:
             progress("what it is")
             cost.tell_cost(lab, part.name)
             signature = find_signature(lab, part.variables)

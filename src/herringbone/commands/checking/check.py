@@ -133,7 +133,7 @@ def _signature(fmu: Path, step: float | None) -> list[str]:
     """What the FMU is in a coupling; nothing if it cannot be used at all, which is said already."""
     from herringbone.cosim.fmu.opening import many_of  # noqa: PLC0415
     from herringbone.cosim.signature.text import described  # noqa: PLC0415
-    from herringbone.running.foreign.started import own_step  # noqa: PLC0415
+    from herringbone.running.foreign.started import own_step, started_content  # noqa: PLC0415
     from herringbone.running.foreign.trials import clearest_signature  # noqa: PLC0415 (numba)
 
     try:
@@ -143,7 +143,7 @@ def _signature(fmu: Path, step: float | None) -> list[str]:
             part.enter_initialization(0.0, 1.0)
             part.exit_initialization()  # pythonfmu does not survive freeing what was not
             try:
-                found = clearest_signature(part, make, steps)
+                found = clearest_signature(part, make, steps, started_content(fmu, {}))
                 return [*described(found), *_asked_as(part, fmu)]
             finally:
                 part.close()

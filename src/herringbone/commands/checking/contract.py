@@ -16,7 +16,7 @@ from herringbone.commands.output import show
 from herringbone.core.declaring.roles import Role
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.housing import read_housing
-from herringbone.running.foreign.started import own_step, started
+from herringbone.running.foreign.started import own_step, started, started_content
 
 ROLES = {
     "housing": Role.HOUSING,
@@ -57,7 +57,8 @@ def _tested(options: argparse.Namespace, progress: Report) -> tuple[list[Finding
     """Findings, and the step of the trials [s]."""
     role, fmu, longest = ROLES[options.role], options.fmu, options.longest_trial
     with many_of(fmu.stem, fmu) as new:
-        make = started(new, assignments(options.set, "--set", "VARIABLE=VALUE"))
+        values = assignments(options.set, "--set", "VARIABLE=VALUE")
+        make = started(new, values)
         if role is Role.HOUSING:
             step = options.step or STEP
             static = None if options.against is None else _static(options.against)
@@ -69,7 +70,13 @@ def _tested(options: argparse.Namespace, progress: Report) -> tuple[list[Finding
         step = options.step or own_step(fmu)
         flanges = options.flange or ()
         found = check_flanges(
-            make, role, step=step, flanges=flanges, longest=longest, progress=progress
+            make,
+            role,
+            step=step,
+            flanges=flanges,
+            longest=longest,
+            progress=progress,
+            content=started_content(fmu, values),
         )
         return found, step
 

@@ -110,12 +110,19 @@ def keep(file: Path, found: object) -> None:
 
 
 def kept(file: Path) -> Any:  # noqa: ANN401 (what was kept)
-    """What was kept in a file; None if there is nothing, or it is damaged or of another user."""
+    """What was kept in a file; None if there is nothing, or it is damaged or of another user.
+
+    A line is logged if it is damaged.
+    """
     try:
-        digest, _, text = file.read_text(encoding="utf-8").partition("\n")
-    except (OSError, ValueError):
+        digest, _, text = file.read_bytes().decode(errors="replace").partition("\n")
+        trusted = is_trusted(file)
+    except OSError:
         return None
-    return json.loads(text) if digest == _digest(text) and is_trusted(file) else None
+    if digest != _digest(text):
+        _LOG.warning("%s is damaged; what it held is found again", file)
+        return None
+    return json.loads(text) if trusted else None
 
 
 def _digest(text: str) -> str:

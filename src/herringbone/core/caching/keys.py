@@ -9,6 +9,7 @@
 | native library | its object code, the C sources, its description in C, which has `sources_key` |
 | FMU | `packed_key`, its resources; a native one: its library |
 | stiffness table, teeth of finite elements | values; syntax as of a kernel; versions of libraries |
+| trials of a foreign part | content, values, name; where trials begin; syntax as of a kernel |
 | answer of a command | question, folder; when sources changed; what is installed; files read |
 
 Syntax: without comments, docstrings and layout, see `core.caching.syntax`. All sources are read

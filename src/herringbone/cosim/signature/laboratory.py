@@ -1,19 +1,22 @@
 """Where trials begin: the start state of a part, again and again.
 
 A state that is restored is trusted only after steps from it gave equal bits twice. Otherwise every
-trial has a new instance.
+trial has a new instance. What was tried before is known (see `known_trials`); an instance is made
+when something is tried that is not.
 """
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import astuple
 from time import perf_counter
 from types import TracebackType
 from typing import Self
 
 import numpy as np
 
-from herringbone.core import FmuError
 from herringbone.core.part import Part
+from herringbone.cosim.signature.first_steps import FirstSteps, first_steps
+from herringbone.cosim.signature.known_trials import KnownTrials
 from herringbone.cosim.signature.trial import Refused, Trial
 from herringbone.cosim.structure.approach import Onward
 
@@ -32,16 +35,14 @@ class Laboratory:
         start_time: of the experiment [s].
         onward: how inputs move on from the start; None: all stay. Angles that turn, and what
             speeds gain, are told relative to that motion, 0 at the start.
+        content: what `make` depends on, the part's name first; empty: trials are not kept.
 
     Attributes:
-        restores: True if saving and restoring gives equal bits; False if not, None if the part does
-            not offer it.
-        repeats: True if two instances give equal bits.
-        why: what is wrong with either, "" if nothing.
-        seconds: of the quickest of the first steps [s]; only for telling how long trials may take.
+        restores, repeats, why: see `FirstSteps`.
+        seconds: of the quickest of the first steps [s], 0 where they are known from before; only
+            for telling how long trials may take.
         start_outputs: (m,) before the first step.
         not_finite: outputs that are not, at the start or in the first steps.
-        instances: how many were made so far.
         turning: numbers of inputs that are angles and turn on.
     """
 
@@ -54,32 +55,32 @@ class Laboratory:
         step: float,
         start_time: float = 0.0,
         onward: Onward | None = None,
+        content: Sequence[str] = (),
     ) -> None:
         self.inputs, self.outputs, self.start = tuple(inputs), tuple(outputs), np.array(start)
         self.step, self.start_time = step, start_time
         self._make, self._onward = make, onward
         self.turning = onward.turning if onward else ()
+        self._content, self._known = content, KnownTrials(content, self._start())
         self._trial: Trial | None = None
         self._handle: int | None = None
         self._rest: dict[float, np.ndarray] = {}
-        self.restores: bool | None = None
-        self.repeats = True
-        self.why = ""
-        self.seconds, self.instances = np.inf, 0
-        self.start_outputs = np.empty(0)
-        self.not_finite: tuple[str, ...] = ()
+        self.seconds = np.inf
 
     def __enter__(self) -> Self:
-        """Make the first instance, and test whether it repeats.
+        """Test on the first instances whether it repeats, if that is not known.
 
         Raises:
             FmuError: it does not instantiate or initialise, or refuses the step.
         """
-        try:
-            self._test()
-        except BaseException:
-            self._close()
-            raise
+        known = self._known.first
+        first = known or self._tested_first()
+        if known:
+            self.seconds = 0.0
+        self._first, self._tested = first, known is None
+        self.restores, self.repeats, self.why = first.restores, first.repeats, first.why
+        self.start_outputs = first.at_start
+        self.not_finite = first.not_finite(self.outputs)
         return self
 
     def __exit__(
@@ -88,17 +89,13 @@ class Laboratory:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self._known.save()
         self._close()
 
-    def at_start(self) -> Trial:
-        """The part at its start, with its start inputs."""
-        if self._trial is None or self._handle is None:
-            self._close()
-            self._trial = self._instance()
-        else:
-            self._trial.restore(self._handle)
-        self._give(self._trial, self.start, 0.0)
-        return self._trial
+    @property
+    def instances(self) -> int:
+        """How many were made, also at other times, if none is restored: two, then one a trial."""
+        return 2 + self._known.count
 
     def run(self, inputs: Sequence[np.ndarray], h: float) -> np.ndarray:
         """(steps + 1, m) outputs at the start and after each step of h [s].
@@ -110,16 +107,15 @@ class Laboratory:
         Raises:
             Refused: the part does.
         """
-        try:
-            trial = self.at_start()
+
+        def find(trial: Trial) -> np.ndarray:
             found = [trial.values()]
             for values in inputs:
                 self._step(trial, values, h)
                 found.append(trial.values())
-        except Refused:
-            self._close()  # after a refused step an FMU must not be used on
-            raise
-        return np.array(found)
+            return np.array(found)
+
+        return self._outcome(find, "outputs", h, np.array(inputs))
 
     def run_signals(self, signals: np.ndarray, h: float, *, rated: bool) -> np.ndarray:
         """(steps, m) outputs after each step of h [s], or (steps, 2 m) with their rates.
@@ -132,31 +128,30 @@ class Laboratory:
         Raises:
             Refused: the part does.
         """
-        count, found = len(self.inputs), []
+        count = len(self.inputs)
         orders = signals.shape[1] // count - 1 if count else 0
-        try:
-            trial = self.at_start()
+
+        def find(trial: Trial) -> np.ndarray:
+            found = []
             for given in signals:
                 self._give(trial, given[:count], 0.0 if orders else h)
                 trial.set_derivatives(given[count:] + self._onward_derivatives(trial, orders))
                 trial.step(h)
                 found.append(np.concatenate([trial.values(), trial.rates() if rated else []]))
-        except Refused:
-            self._close()
-            raise
-        return np.array(found)
+            return np.array(found)
+
+        return self._outcome(find, "outputs and rates" if rated else "of signals", h, signals)
 
     def after(self, lead: Sequence[np.ndarray], last: np.ndarray, h: float) -> np.ndarray:
         """(m,) outputs after whole steps on `lead` and one of h [s] on `last`; raises Refused."""
-        try:
-            trial = self.at_start()
+
+        def find(trial: Trial) -> np.ndarray:
             for values in lead:
                 self._step(trial, values, self.step)
             self._step(trial, last, h)
             return trial.values()
-        except Refused:
-            self._close()
-            raise
+
+        return self._outcome(find, "after others", h, np.array([*lead, last]))
 
     def at_rest(self, h: float) -> np.ndarray:
         """(m,) outputs after one step of h [s] on the start inputs; kept. Raises Refused."""
@@ -167,6 +162,32 @@ class Laboratory:
         if h not in self._rest or len(self._rest[h]) < steps:
             self._rest[h] = self.run([self.start] * steps, h)[1:]
         return self._rest[h][:steps]
+
+    def _outcome(
+        self, find: Callable[[Trial], np.ndarray], what: str, h: float, given: np.ndarray
+    ) -> np.ndarray:
+        """What a trial from the start gives, known or found now; see `KnownTrials.outcome`."""
+
+        def found() -> np.ndarray:
+            try:
+                return find(self._at_start())
+            except Refused:
+                self._close()  # after a refused step an FMU must not be used on
+                raise
+
+        return self._known.outcome(found, what, h, given)
+
+    def _at_start(self) -> Trial:
+        """The part at its start, with its start inputs."""
+        if not self._tested:
+            self._test_again()
+        if self._trial is None or self._handle is None:
+            self._close()
+            self._trial = self._instance()
+        else:
+            self._trial.restore(self._handle)
+        self._give(self._trial, self.start, 0.0)
+        return self._trial
 
     def _step(self, trial: Trial, values: np.ndarray, h: float) -> None:
         """A step of h [s] on inputs (n,) that stay; of shorter ones where held angles turn on."""
@@ -188,7 +209,6 @@ class Laboratory:
 
     def _instance(self) -> Trial:
         stop = self.start_time + 1e6 * self.step
-        self.instances += 1
         return Trial(self._make(), self.inputs, self.outputs, self.start_time, stop)
 
     def _steps(self, trial: Trial) -> np.ndarray:
@@ -204,56 +224,38 @@ class Laboratory:
         """Small changes of all inputs, so that what a state forgets shows."""
         return 1e-6 * (number + 1.0) * np.maximum(1e-3, np.abs(self.start))
 
-    def _test(self) -> None:
-        self._trial = self._instance()
-        saved = self._saved()
-        self._give(self._trial, self.start, 0.0)
-        self.start_outputs = self._trial.values()
-        first = self._steps(self._trial)
-        finite = np.isfinite(np.vstack([self.start_outputs, first])).all(axis=0)
-        self.not_finite = tuple(n for n, ok in zip(self.outputs, finite, strict=True) if not ok)
-        if saved is not None:
-            try:
-                self._trial.restore(saved)
-                again = self._steps(self._trial)
-                self._trial.restore(saved)
-                self.restores = bool(np.array_equal(first, again, equal_nan=True))
-                self.why = "" if self.restores else self._differs(first, again, "after a restore")
-            except Refused as error:
-                self.restores, self.why = False, str(error)
-        if not self.restores:
-            self._compare_instances(first)
-        elif saved is not None:
-            self._handle = saved
-
-    def _saved(self) -> int | None:
-        assert self._trial is not None
-        if not self._trial.can_restore:
-            return None
+    def _tested_first(self) -> FirstSteps:
+        """What the first steps tell, which is kept; raises FmuError."""
         try:
-            return self._trial.save()
+            found = self._test()
         except Refused as error:
-            self.restores, self.why = False, str(error)
-            return None
+            self._known.put_refusal(error)
+            raise
+        self._known.put_first(found)
+        return found
 
-    def _compare_instances(self, first: np.ndarray) -> None:
-        self._close()
-        try:
-            self._trial = self._instance()
-        except FmuError as error:
-            raise FmuError(f"no second instance for trials: {error}") from error
-        again = self._steps(self._trial)
-        self.repeats = bool(np.array_equal(first, again, equal_nan=True))
-        if not self.repeats:
-            self.why = self._differs(first, again, "in a second instance")
-
-    def _differs(self, first: np.ndarray, again: np.ndarray, where: str) -> str:
-        column = int(np.argmax(np.abs(first - again).max(axis=0)))
-        row = int(np.argmax(np.abs(first - again)[:, column]))
-        return (
-            f"{self.outputs[column]} is {again[row, column]:.17g} {where}, "
-            f"{first[row, column]:.17g} before"
+    def _test(self) -> FirstSteps:
+        found, ready = first_steps(
+            self._instance,
+            lambda trial: self._give(trial, self.start, 0.0),
+            self._steps,
+            self.outputs,
         )
+        if ready:
+            self._trial, self._handle = ready
+        return found
+
+    def _test_again(self) -> None:
+        """See whether the part is still the one of which trials are known; raises FmuError."""
+        self._tested = True
+        if not self._test().same(self._first):
+            self._known.drop(self._content[0])
+
+    def _start(self) -> str:
+        """Where trials begin, and how."""
+        onward = astuple(self._onward) if self._onward else ()
+        known = self.start, self.inputs, self.outputs, self.step, self.start_time, *onward
+        return " ".join(x.tobytes().hex() if isinstance(x, np.ndarray) else repr(x) for x in known)
 
     def _close(self) -> None:
         if self._trial is not None:

@@ -16,9 +16,19 @@ from herringbone.cosim.loops.calls import (
 from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.kernels.fmi_calls import DISCARD
 
+_FATAL = 4
+
 
 class Refused(FmuError):
-    """A part refused a trial step, a value or its state; or a run would have too many steps."""
+    """A part refused a trial step, a value or its state; or a run would have too many steps.
+
+    Attributes:
+        lost: the part crashed, or gave no answer in time: another time it may do otherwise.
+    """
+
+    def __init__(self, message: str, *, lost: bool = False) -> None:
+        super().__init__(message)
+        self.lost = lost
 
 
 def check_length(steps: int, longest: int | None) -> None:
@@ -74,7 +84,7 @@ class Trial:
             self._at.set_real, self._inputs_at, self._given.size, self._given_at
         )
         if status > LAST_GOOD:
-            raise Refused(self._refusal("an input value", status))
+            raise self._refusal("an input value", status)
 
     def values(self) -> np.ndarray:
         """(m,) all outputs; raises Refused."""
@@ -82,7 +92,7 @@ class Trial:
             self._at.get_real, self._outputs_at, self._found.size, self._found_at
         )
         if status > LAST_GOOD:
-            raise Refused(self._refusal("to give its outputs", status))
+            raise self._refusal("to give its outputs", status)
         return self._found.copy()
 
     def set_derivatives(self, values: np.ndarray) -> None:
@@ -121,13 +131,13 @@ class Trial:
             values.ctypes.data,
         )
         if status > LAST_GOOD:
-            raise Refused(self._refusal(what, status))
+            raise self._refusal(what, status)
 
     def step(self, h: float) -> None:
         """Step by h [s]; raises Refused."""
         status = do_step(self._at.do_step, self._at.component, self.time, h)
         if status > LAST_GOOD:
-            raise Refused(self._refusal(f"a step of {h:g} s", status))
+            raise self._refusal(f"a step of {h:g} s", status)
         self.time += h
 
     @property
@@ -140,7 +150,7 @@ class Trial:
         handle = ctypes.c_void_p(self.part.new_state())
         status = state_call(self._at.get_state, self._at.component, ctypes.addressof(handle))
         if status > LAST_GOOD:
-            raise Refused(self._refusal("to save its state", status))
+            raise self._refusal("to save its state", status)
         found = int(handle.value or 0)
         self._saved[found] = self.time
         return found
@@ -149,7 +159,7 @@ class Trial:
         """Go back to a saved state; raises Refused."""
         status = state_call(self._at.set_state, self._at.component, handle)
         if status > LAST_GOOD:
-            raise Refused(self._refusal("to restore its state", status))
+            raise self._refusal("to restore its state", status)
         self.time = self._saved[handle]
 
     def close(self) -> None:
@@ -165,10 +175,11 @@ class Trial:
             return 0
         return exchange_reals(address, self._at.component, references, count, values)
 
-    def _refusal(self, what: str, status: int) -> str:
-        """The message; after an error FMI allows nothing but to free the part."""
+    def _refusal(self, what: str, status: int) -> Refused:
+        """What is raised; after an error FMI allows nothing but to free the part."""
         if status > DISCARD:
             self.part.failed()
             self._saved.clear()
         said = "; ".join(self.part.messages())
-        return f"{self.part.name} refuses {what} (status {status})" + (f": {said}" if said else "")
+        whole = f"{self.part.name} refuses {what} (status {status})" + (f": {said}" if said else "")
+        return Refused(whole, lost=status >= _FATAL)

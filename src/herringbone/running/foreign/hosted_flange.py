@@ -20,8 +20,9 @@ from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Kind, Laboratory
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.fmi.packed.documentation import FLANGE_MODELS
-from herringbone.running.foreign.started import own_step, started
-from herringbone.running.foreign.trials import signature_of, start_inputs
+from herringbone.running.foreign.start_inputs import start_inputs
+from herringbone.running.foreign.started import own_step, started, started_content
+from herringbone.running.foreign.trials import signature_of
 
 _TRIED = (2e-4, 1e-4, 5e-5, 1e-3)
 """Steps of further trials [s], while the model is too far from the FMU: an FMU of a gearbox
@@ -91,12 +92,13 @@ def hosted_flange(
             return HostedFlange(fmu, found, host, limits, takes_derivatives, len(model.a), 0.0, 0.0)
         with activity(f"identifying {found.tau} of {fmu.name}"):
             start = start_inputs(part, inputs)
-            signature = signature_of(make(), make, step)
+            content = started_content(fmu, values or {})
+            signature = signature_of(make(), make, step, content)
             if signature.kind is Kind.NOISY:
                 raise FmuError(f"{fmu}: {signature.notes[0]}")
             tried: list[HostedFlange] = []
             for h in (step, *_TRIED):
-                with Laboratory(make, inputs, outputs, start, h) as lab:
+                with Laboratory(make, inputs, outputs, start, h, content=content) as lab:
                     tell_cost(lab, fmu.name)
                     surrogate = Surrogate(lab, signature, part.variables)
                     if surrogate.model is not None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key
-from herringbone.core.places.paths import cache_root
+from herringbone.core.caching.tried import tried_folder
 from herringbone.cosim.signature import Answer, Kind, Signature
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.signature import Rate
@@ -27,7 +27,7 @@ def known_signature(spec: PartSpec, step: float, find: Callable[[], Signature]) 
         step: of the trials [s].
         find: makes the trials.
     """
-    file = cache_root() / "signatures" / f"{_key(spec, step)}.json"
+    file = tried_folder("signatures") / f"{_key(spec, step)}.json"
     if (known := kept(file)) is not None:
         return _signature(known)
     found = find()

@@ -54,11 +54,15 @@ def predictable(
         tell(note)
     started = under_load(started)
     exact = turned_back(started)
+    same = exact is started  # as without parts that are brought to the start
     with opened_surrogates(exact, trials) as foreign:
         exact, missing = without_missing(exact, foreign)
-        started, _ = without_missing(started, foreign)
         for line in missing:
             tell(line)
-        exact, started = (speeding_up(s, foreign.strangers) for s in (exact, started))
+        exact = speeding_up(exact, foreign.strangers)
+        if same:
+            started = exact
+        else:
+            started = speeding_up(without_missing(started, foreign)[0], foreign.strangers)
         known = KnownLimits(started, trials)
         yield Predictable(exact, started, chosen.name, foreign.strangers, missing, known)

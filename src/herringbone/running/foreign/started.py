@@ -6,6 +6,7 @@ from pathlib import Path
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.part import Part
 from herringbone.cosim.fmu.file import read_fmu
+from herringbone.running.content import digest_of_file, values_of
 
 _STEP = 1e-4
 
@@ -35,6 +36,11 @@ def started(new: Callable[[], Part], values: Mapping[str, str]) -> Callable[[], 
         return part
 
     return make
+
+
+def started_content(fmu: Path, values: Mapping[str, str]) -> tuple[str, ...]:
+    """What trials of such instances depend on, see `Laboratory`."""
+    return fmu.stem, "own units", digest_of_file(fmu), *values_of(values)
 
 
 def own_step(fmu: Path) -> float:

@@ -25,8 +25,10 @@ from herringbone.cosim.structure.approach import Onward
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.running.content import contents_of_trials
 from herringbone.running.foreign.foreign_parts import alike, understood
-from herringbone.running.foreign.trials import found_signature, start_inputs
+from herringbone.running.foreign.start_inputs import known_start_inputs
+from herringbone.running.foreign.trials import found_signature
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.start import without_parts
 
@@ -176,24 +178,30 @@ class _Beginning(NamedTuple):
         make: makes an instance that is there.
         start: (n,) inputs there; 0 for angles that turn.
         onward: how these move on; None: they stay.
+        content: see `Laboratory`.
     """
 
     make: Callable[[], Part]
     start: np.ndarray
     onward: Onward | None
+    content: tuple[str, ...]
 
     def laboratory(self, inputs: list[str], outputs: list[str], step: float) -> Laboratory:
         """Of trials from here, with steps of a length [s] at first."""
-        return Laboratory(self.make, inputs, outputs, self.start, step, onward=self.onward)
+        return Laboratory(
+            self.make, inputs, outputs, self.start, step, onward=self.onward, content=self.content
+        )
 
 
 def _beginning(spec: PartSpec, make: Callable[[], Part], inputs: list[str]) -> _Beginning:
+    content = contents_of_trials(spec)
     if spec.approach is None:
-        start = start_inputs(make(), inputs) if inputs else np.empty(0)
-        return _Beginning(make, start, None)
+        start = known_start_inputs(make, inputs, content) if inputs else np.empty(0)
+        return _Beginning(make, start, None, content)
     given = {u.name: u for u in spec.approach.inputs}
     onward = replace(spec.approach, inputs=tuple(given[name] for name in inputs)).onward
-    return _Beginning(lambda: approached(make(), spec.approach), onward.still, onward)
+    brought = (*content, repr(spec.approach))
+    return _Beginning(lambda: approached(make(), spec.approach), onward.still, onward, brought)
 
 
 def _with_clock(
@@ -210,7 +218,9 @@ def _with_clock(
     def of_one_length() -> Part:  # an instance that was restored may have taken other steps
         return WithoutStates(begin.make())
 
-    fresh = begin._replace(make=of_one_length) if part.one_step else begin
+    fresh = begin
+    if part.one_step:
+        fresh = begin._replace(make=of_one_length, content=(*begin.content, "one length"))
     wanted = (step, *_USUAL_STEPS) if part.one_step else (round_period(signature.tick),)
     for period in wanted:
         lab = fresh.laboratory(inputs, outputs, period)

@@ -12,7 +12,9 @@ from herringbone.core.part import Part
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, cost, find_signature
 from herringbone.cosim.structure.system import PartSpec
+from herringbone.running.content import contents_of_trials
 from herringbone.running.foreign.known_signatures import known_signature
+from herringbone.running.foreign.start_inputs import known_start_inputs
 
 _HERE = (
     ", and runs in this process: no trials; in a child process (on Linux, without --in-process) "
@@ -36,12 +38,14 @@ def found_signature(spec: PartSpec, part: Part, instances: Instances, step: floa
 
     def tried() -> Signature:
         with activity(f"finding out what {part.name} is"), instances(spec) as make:
-            return signature_of(part, make, step)
+            return signature_of(part, make, step, contents_of_trials(spec))
 
     return known_signature(spec, step, tried)
 
 
-def clearest_signature(part: Part, make: Callable[[], Part], steps: Sequence[float]) -> Signature:
+def clearest_signature(
+    part: Part, make: Callable[[], Part], steps: Sequence[float], content: Sequence[str]
+) -> Signature:
     """The signature by the first step [s] whose trials leave nothing open, or least.
 
     A vibration that trials are too long to resolve looks like an output that is no rate of another.
@@ -53,19 +57,22 @@ def clearest_signature(part: Part, make: Callable[[], Part], steps: Sequence[flo
     tried: list[Signature] = []
     for step in steps:
         if not tried or step < tried[0].step:
-            tried.append(signature_of(part, make, step))
+            tried.append(signature_of(part, make, step, content))
         if left_open(tried[-1]) == (False, 0):
             break
     return min(tried, key=left_open)
 
 
-def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature:
+def signature_of(
+    part: Part, make: Callable[[], Part], step: float, content: Sequence[str] = ()
+) -> Signature:
     """Signature of a part, found on further instances; what they refuse leaves it unknown.
 
     Args:
         part: whose variables count.
         make: makes a further instance, start values set.
         step: of the trials [s].
+        content: see `Laboratory`.
     """
     inputs, outputs = (_reals(part, causality) for causality in ("input", "output"))
     if not has_further(part):
@@ -74,23 +81,29 @@ def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature
         return _unknown(inputs, outputs, step, "it declares that its steps cannot vary: no trials")
     if not inputs and any(v.causality == "input" for v in part.variables.values()):
         return _unknown(inputs, outputs, step, "its inputs are no reals: no trials")
-    return _tried(part, make, inputs, outputs, step)
+    return _tried(part, make, inputs, outputs, step, content)
 
 
 def _tried(
-    part: Part, make: Callable[[], Part], inputs: list[str], outputs: list[str], step: float
+    part: Part,
+    make: Callable[[], Part],
+    inputs: list[str],
+    outputs: list[str],
+    step: float,
+    content: Sequence[str],
 ) -> Signature:
     """See `signature_of`; outputs that are not finite in trials are left out of them."""
     try:
-        start = start_inputs(make(), inputs)
-        with Laboratory(make, inputs, outputs, start, step) as lab:
+        start = known_start_inputs(make, inputs, content)
+        with Laboratory(make, inputs, outputs, start, step, content=content) as lab:
             silent = lab.not_finite
             if part.once and not lab.repeats:
                 return _unknown(inputs, outputs, step, f"{_LEFT}: {lab.why}: no trials")
             cost.tell_cost(lab, part.name)
             if not silent:
                 return find_signature(lab, part.variables)
-        with Laboratory(make, inputs, _others(outputs, silent), start, step) as lab:
+        shown = _others(outputs, silent)
+        with Laboratory(make, inputs, shown, start, step, content=content) as lab:
             found = find_signature(lab, part.variables)
     except FmuError as error:
         return _unknown(inputs, outputs, step, f"no trials: {error}")
@@ -112,15 +125,6 @@ def _reals(part: Part, causality: str) -> list[str]:
         for name, v in part.variables.items()
         if v.causality == causality and v.is_real and not is_node(name)
     ]
-
-
-def start_inputs(part: Part, inputs: list[str]) -> np.ndarray:
-    """Start values of the inputs, as an instance has them when it is initialised."""
-    try:
-        part.enter_initialization(0.0, 1.0)
-        return np.array(part.get(inputs))
-    finally:
-        part.close()
 
 
 def _unknown(inputs: list[str], outputs: list[str], step: float, why: str) -> Signature:

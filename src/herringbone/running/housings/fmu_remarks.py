@@ -9,8 +9,8 @@ from herringbone.analysis.finding import Finding, Verdict
 from herringbone.analysis.housing.contract import check_housing, of_energy
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, StructureError
 from herringbone.core.caching.files import keep, kept
-from herringbone.core.caching.keys import sources_key
-from herringbone.core.places.paths import cache_folder
+from herringbone.core.caching.keys import digest_of, sources_key
+from herringbone.core.caching.tried import tried_folder
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.opening import open_fmu
 from herringbone.cosim.structure.system import System
@@ -70,7 +70,7 @@ def replacement_remarks(part: str, fmu: Path, usual: float) -> HousingRemarks | 
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
     except OSError:
         return None
-    known = cache_folder(f"housing-checks/{sources_key()}") / f"{digest}-{usual:.3g}.json"
+    known = tried_folder("housings") / f"{digest_of(sources_key(), digest, f'{usual:.3g}')}.json"
     if (found := kept(known)) is None:
         try:
             found = _tested(fmu, usual)

@@ -24,7 +24,7 @@ def settings_of(system: System, scene: Scene, options: object) -> dict[str, str]
     plain = replace(scene, description="", gears={}, housings={}, values={})
     structure = (system.connections, sorted(system.channels.items()))
     parts = [f"{p.name} {p.component} {p.fmu and digest_of_file(p.fmu)}" for p in system.parts]
-    values = [f"{p.name}.{told}" for p in system.parts for told in values_of(p)]
+    values = [f"{p.name}.{told}" for p in system.parts for told in values_of(p.values)]
     values += [f"{p.name} {p.approach!r}" for p in system.parts if p.approach]
     told = (plain.name, plain.t_end, plain.record_step, plain.start, plain.start_offset)
     scene_told = (*told, plain.model) if plain.model else told

@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key, versions_of
-from herringbone.core.places.paths import cache_root
+from herringbone.core.caching.tried import tried_folder
 from herringbone.cosim.structure.approach import Approach, SteadyInput
 from herringbone.cosim.structure.system import System
 from herringbone.running.content import contents_of_system
@@ -70,7 +70,7 @@ def _known_start(system: System, known: System, step: float) -> SettledStart:
     key = digest_of(
         kernels_key(*_SOURCES), *versions_of(*_LIBRARIES), *contents_of_system(system), repr(step)
     )
-    file = cache_root() / "settled-starts" / f"{key}.json"
+    file = tried_folder("starts") / f"{key}.json"
     if (plain := kept(file)) is not None:
         if _NEVER in plain:
             raise NeverSettlesError(plain[_NEVER])

@@ -16,7 +16,8 @@ from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.foreign.foreign_parts import as_it_moves, can_be_watched
-from herringbone.running.foreign.trials import found_signature, start_inputs
+from herringbone.running.foreign.start_inputs import start_inputs
+from herringbone.running.foreign.trials import found_signature
 from herringbone.running.loading import instances
 from herringbone.running.settling.stranger import NoSettledStartError, Stranger
 

@@ -13,7 +13,8 @@ from herringbone.analysis.stability.surrogates.surrogate import PROMISED, Surrog
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Laboratory
 from herringbone.cosim.signature.rotation import InputRule
-from herringbone.running.foreign.trials import signature_of, start_inputs
+from herringbone.running.foreign.start_inputs import start_inputs
+from herringbone.running.foreign.trials import signature_of
 
 LAG, INERTIA, STIFFNESS, DAMPING = 2e-3, 0.12, 8e4, 15.0
 """Of the e-drive in `tests/fmus/kinds`."""
