@@ -1,6 +1,7 @@
 """Names from files and the command line are neither code nor paths, whatever they look like."""
 
 import json
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ PIECES = (
 CODE = 'x"""; import os; os.system("touch pwned"); """'
 
 
+@cache
 def hostile_names():
     """Seeded; the first ones are those that once ran as code, or wrote outside the cache."""
     rng = np.random.default_rng(SEED)
