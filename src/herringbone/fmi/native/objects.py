@@ -24,9 +24,10 @@ _OPTIMISATION = 3
 _PLAIN = 1
 """Before code is made small: it shows that indices are inside their tuples, so that no kernel
 fails. Small code alone does not tell, as it keeps functions apart."""
-_PASSES = 2
-"""The second one drops what the first one has shown to be unreachable."""
+_PASSES, _MOST = 2, 4
+"""The second one drops what the first one has shown to be unreachable; what that shows, a third."""
 _ANY_NAME = "k"  # LLVM appends a number
+_RAISES = "numba_do_raise"
 _OF_THIS_PROCESS = "numba.dynamic.globals"
 
 
@@ -72,6 +73,11 @@ def _is_rare(function: llvm.ValueRef) -> bool:
     return any(b"cold" in attribute for attribute in function.attributes)
 
 
+def _may_fail(module: llvm.ModuleRef) -> bool:
+    """True if numba's error path is still there."""
+    return any(f.is_declaration and f.name == _RAISES for f in module.functions)
+
+
 def _make_small(functions: Iterable[llvm.ValueRef]) -> None:
     for function in functions:
         if not function.is_declaration:
@@ -105,7 +111,9 @@ def _optimised(kernels: dict[str, CFunction], platform: Platform, *, fast: bool)
     if not fast:
         _optimise(module, target, _PLAIN, fast=False)
     _make_small(f for f in module.functions if not fast or _is_rare(f))
-    for _ in range(_PASSES):
+    for done in range(_MOST):
+        if done >= _PASSES and not _may_fail(module):
+            break
         _optimise(module, target, fast=fast)
     return module
 

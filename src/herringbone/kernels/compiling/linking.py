@@ -2,9 +2,10 @@
 
 numba optimises a function and makes machine code of it, then does so again with every caller that
 contains it; in a deep call tree that takes most of the time of a first run. Here a kernel that is
-called by other kernels is a `Piece`: LLVM code as numba writes it, and no more, which the cache
-keeps (see `kept_pieces`). Whoever is called from Python or through a C address is a `Whole`: it
-takes in all pieces that it reaches, makes them its own, and is optimised once.
+called by other kernels is a `Piece`: LLVM code as numba writes it, made shorter (see
+`simplifying`), which the cache keeps (see `kept_pieces`). Whoever is called from Python or through
+a C address is a `Whole`: it takes in all pieces that it reaches, makes them its own, and is
+optimised once.
 
 No piece can be seen from outside of its whole. numba tells closures of one factory apart by a
 counter of the process, so that pieces of the same name in callers that different processes cached

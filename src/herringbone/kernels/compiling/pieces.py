@@ -1,4 +1,4 @@
-"""LLVM code of kernels that other kernels call, neither linked with what they call nor optimised.
+"""LLVM code of kernels that other kernels call: made shorter, not linked with what they call.
 
 Where a kernel takes `min`, `int` or a power, numba calls a function of its own, which it tells from
 others of the same name by a counter of the process. A piece gets a copy of it, named by what is in
