@@ -7,7 +7,7 @@ compliance is reciprocal; responses add up; a force record never gets out more w
 a halved step changes little; velocities are the rates of the positions; the answer comes in the
 step of the force. Vibration must not grow; whether it dies out is told, not asked for.
 
-Behaviour is tested in `housing.behaviour`.
+Behaviour is tested in `behaviour`.
 """
 
 from collections.abc import Callable, Iterator, Sequence

@@ -51,7 +51,7 @@ def run_steady(options: argparse.Namespace, found: Plan) -> OutcomeKind:
 
     Raises:
         ParameterError: it is asked over a range.
-        HerringboneError: see `running.steady`.
+        HerringboneError: see `running.operating.steady`.
     """
     from herringbone.analysis.steady.state import SteadyState  # noqa: PLC0415 (numba)
     from herringbone.running.operating.questions import answers  # noqa: PLC0415

@@ -150,7 +150,7 @@ INSTANCE = np.dtype(
     waiting                     steps that wait to be sent
     read                        1 if outputs were read since the last step
     steps, steps_read           steps since outputs were read, and between the last two times
-    batch                       1 if no step is sent until `calls.finish`
+    batch                       1 if no step is sent until `calls.signals.finish`
     flight                      1 if a message is under way
     came                        worst status of messages that has not been told
     reads, wanted               what the message asks for, and address of where that goes (int64),

@@ -6,7 +6,7 @@ names and the set name `PARAMETER_SET`. libcosim takes the step from the annotat
 experiment, OMSimulator from the one in the system. libcosim sets start values of states only from
 its own format, which lies in the file as well (`osp_structure`).
 
-Names of nested parts are flat in one system (see `core.part_path.flat_name`); an annotation keeps
+Names of nested parts are flat in one system (see `core.places.part_path`); an annotation keeps
 their paths.
 
 Connectors are the connected variables and all outputs that this master would record; signal nodes

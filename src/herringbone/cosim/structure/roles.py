@@ -1,6 +1,7 @@
 """Which parts are bodies, which are elements, by what their outputs depend on directly.
 
-These are roles in the coupling; what parts are for, such as bearing or housing: `core.roles`.
+These are roles in the coupling; what parts are for, such as bearing or housing:
+`core.declaring.roles`.
 """
 
 from collections.abc import Mapping, Sequence

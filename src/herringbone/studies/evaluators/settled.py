@@ -15,7 +15,7 @@ from herringbone.studies.study import Point
 
 @dataclass(frozen=True)
 class Settled:
-    """Runs that go on until levels do not change any more, see `running.settled`.
+    """Runs that go on until levels do not change any more, see `running.operating.settled`.
 
     Attributes:
         tolerance: change of levels and means of all groups that counts as none.
