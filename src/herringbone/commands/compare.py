@@ -31,7 +31,9 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--columns", nargs="+", default=[], metavar="PATTERN",
         help="columns (*, ?) to compare; the channel groups of B if not given",
     )  # fmt: skip
-    sub.add_argument("--highest", type=float, help="end of the spectra in the picture in Hz")
+    sub.add_argument(
+        "--highest", type=float, help="end of the spectra in the picture in Hz; 3000 if not given"
+    )
     sub.add_argument("-o", "--output", type=Path, help=f"folder for {', '.join(FILES)}")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
     record.add_options(sub)

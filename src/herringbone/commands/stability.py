@@ -34,7 +34,10 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's own options."""
     add_comparison(sub)
     sub.add_argument("--step", type=float, help="only say what happens at this step in s, and why")
-    sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error asked for")
+    sub.add_argument(
+        "--tolerance", type=float, default=1e-3,
+        help="relative error asked for; %(default)g if not given",
+    )  # fmt: skip
     sub.add_argument(
         "--simulate", action="store_true", help="also find the non-linear system's limits by runs"
     )

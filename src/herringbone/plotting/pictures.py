@@ -14,7 +14,7 @@ from herringbone.analysis.figures.radiated_power import LABEL, level_db
 from herringbone.analysis.figures.radiated_power import radiated_power as power_of
 from herringbone.analysis.figures.standstill import has_pictures
 from herringbone.analysis.gearboxes import by_gearbox
-from herringbone.core import HerringboneError, ParameterError
+from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.core.declaring.units import R_MIN
 from herringbone.plotting.overview import overview
@@ -38,6 +38,7 @@ from herringbone.plotting.style import (
     new_figure,
     styled,
 )
+from herringbone.result.folder.writing import replacing
 from herringbone.result.result import Result
 
 DIRECTION = {"x": "x (toward the wheel)", "y": "y", "z": "z (axial)"}
@@ -257,9 +258,7 @@ def write_pictures(result: Result, folder: str | Path, highest: float | None = N
             except ParameterError:
                 continue
             file = Path(folder) / f"{name}{box and f'.{box}'}.png"
-            try:
-                FigureCanvasAgg(figure).print_png(file)
-            except OSError as error:
-                raise HerringboneError(f"cannot write {file}: {error.strerror}") from error
+            with replacing(file, text=False) as stream:
+                FigureCanvasAgg(figure).print_png(stream)
             files.append(file)
     return files

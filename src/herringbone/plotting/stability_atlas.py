@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from herringbone.analysis.stability.atlas import Panel
-from herringbone.core import HerringboneError
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, ShownFigure, figure_legend, styled
 
 _WIDTH, _HEIGHT = 12.6, 4.6
@@ -32,12 +31,7 @@ def write_atlas(panels: Sequence[Panel], file: str | Path) -> None:
     Raises:
         HerringboneError: the file cannot be written.
     """
-    try:
-        atlas_picture(panels).savefig(file)
-    except OSError as error:
-        raise HerringboneError(
-            f"cannot write {file}: {error.strerror or error}; choose another folder with -o"
-        ) from error
+    atlas_picture(panels).savefig(file)
 
 
 @styled

@@ -9,6 +9,8 @@ Source: M. Okabe and K. Ito, Color Universal Design (2008), for the colours.
 from collections.abc import Callable
 from functools import wraps
 from io import BytesIO
+from os import PathLike
+from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib as mpl
@@ -17,6 +19,8 @@ from cycler import cycler
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from herringbone.result.folder.writing import replacing
 
 DPI = 110
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
@@ -70,6 +74,19 @@ Drawn = TypeVar("Drawn")
 
 class ShownFigure(Figure):
     """A figure that a notebook shows as it is, without pyplot and without a magic command."""
+
+    def savefig(self, fname: Any, **options: Any) -> None:  # noqa: ANN401 (of matplotlib)
+        """As of matplotlib; a file is there whole, or as it was before.
+
+        Raises:
+            HerringboneError: it cannot be written.
+        """
+        ending = Path(fname).suffix if isinstance(fname, str | PathLike) else ""
+        if not ending or "format" in options:
+            super().savefig(fname, **options)
+            return
+        with replacing(Path(fname), text=False) as stream:
+            super().savefig(stream, format=ending[1:], **options)
 
     def _repr_png_(self) -> bytes:
         picture = BytesIO()

@@ -20,12 +20,22 @@ from herringbone.core import EXIT_CODES
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     add_comparison(sub)
-    sub.add_argument("--steps", type=float, nargs="+", help="communication step sizes in s")
     sub.add_argument(
-        "--tolerances", type=float, nargs="+", help="relative errors: a curve of adaptive li"
+        "--steps",
+        type=float,
+        nargs="+",
+        help="communication step sizes in s; a ladder of them if not given",
+    )
+    sub.add_argument(
+        "--tolerances",
+        type=float,
+        nargs="+",
+        help="relative errors: a curve of adaptive li; none if not given",
     )
     sub.add_argument("--fuse", action="store_true", help="curves of the fused system, too")
-    sub.add_argument("--t-end", type=float, help="duration of each run in s")
+    sub.add_argument(
+        "--t-end", type=float, help="duration of each run in s; the scene's if not given"
+    )
     add_kind(sub)
     add_replacements(sub)
     add_cells(sub)

@@ -60,7 +60,8 @@ def _band_options(sub: argparse.ArgumentParser) -> None:
     )
     sub.add_argument(
         "--tolerance", type=float, default=0.05,
-        help="error of the receptance at the seats, relative to the static compliance",
+        help="error of the receptance at the seats, relative to the static compliance; "
+        "%(default)g if not given",
     )  # fmt: skip
     sub.add_argument(
         "-o", "--output", type=Path, help="folder or .zip file; under results if not given"

@@ -21,7 +21,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     add_scene(sub, optional=True)
     add_operating_point(sub)
     _add_coupling(sub)
-    sub.add_argument("--t-end", type=float, help="duration in s")
+    sub.add_argument("--t-end", type=float, help="duration in s; the scene's if not given")
     sub.add_argument("--record-step", type=float, help="time between records in s")
     sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
     add_kind(sub)

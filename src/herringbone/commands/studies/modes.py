@@ -32,11 +32,12 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--highest",
         type=float,
         default=_HIGHEST,
-        help="frequency up to which modes are shown in Hz",
+        help="frequency up to which modes are shown in Hz; %(default)g if not given",
     )
     sub.add_argument(
-        "--speed", type=float, default=_HIGHEST, help="end of the Campbell diagram in r/min"
-    )
+        "--speed", type=float, default=_HIGHEST,
+        help="end of the Campbell diagram in r/min; %(default)g if not given",
+    )  # fmt: skip
     sub.add_argument(
         "--shapes", type=int, nargs="+", default=[], metavar="MODE",
         help="modes whose shapes are drawn; those that answer most to the mesh if not given",

@@ -32,7 +32,9 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     add_scene(sub)
     add_operating_point(sub)
-    sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error, 1e-3")
+    sub.add_argument(
+        "--tolerance", type=float, default=1e-3, help="relative error; %(default)g if not given"
+    )
     add_start_values(sub)
     add_replacements(sub)
     add_cells(sub)

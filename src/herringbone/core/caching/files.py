@@ -11,8 +11,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from herringbone.core.errors import reason
 from herringbone.core.places.files import PART
-from herringbone.core.places.paths import is_trusted
+from herringbone.core.places.paths import CACHE_VARIABLE, is_trusted
 
 _LOG = logging.getLogger("herringbone")
 _SUFFIX = ".sha256"
@@ -25,7 +26,7 @@ def _stamp(file: Path) -> Path:
 
 
 def write_file(file: Path, content: bytes) -> None:
-    """Write a file so that others see all of it or nothing; raises OSError."""
+    """Write a file so that others see all of it or nothing; raises OSError, which names it."""
     file.parent.mkdir(parents=True, exist_ok=True)
     _sweep(file.parent)
     with tempfile.NamedTemporaryFile(dir=file.parent, suffix=PART, delete=False) as part:
@@ -33,9 +34,10 @@ def write_file(file: Path, content: bytes) -> None:
             part.write(content)
             part.close()
             os.replace(part.name, file)  # noqa: PTH105 (atomic on all platforms)
-        except OSError:
+        except OSError as error:
             Path(part.name).unlink(missing_ok=True)
-            raise
+            why = f"{reason(error)}; make room there, or set {CACHE_VARIABLE} to another folder"
+            raise OSError(error.errno, why, str(file)) from error
 
 
 def _sweep(folder: Path) -> None:

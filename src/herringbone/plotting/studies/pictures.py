@@ -18,7 +18,7 @@ from herringbone.analysis.figures.sensitivity import (
 from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
-from herringbone.core import HerringboneError, ParameterError
+from herringbone.core import ParameterError
 from herringbone.plotting.studies.levels import Band, levels
 from herringbone.plotting.studies.maps import is_map, level_map
 from herringbone.plotting.studies.sensitivities import PARAMETER, band, tornado
@@ -105,10 +105,7 @@ def write_steady_pictures(
 
 
 def _written(figure: Figure, file: Path) -> Path:
-    try:
-        figure.savefig(file)
-    except OSError as error:
-        raise HerringboneError(f"cannot write {file}: {error.strerror}") from error
+    figure.savefig(file)
     return file
 
 

@@ -14,7 +14,7 @@ from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.native.started import build_started_fmu
 from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.exporting.carried_files import carried_files, refuse_files, without_files
-from herringbone.running.exporting.parallel_step import parallel_step
+from herringbone.running.exporting.parallel_step import parallel_step, told_late
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
 from herringbone.scenes import Scene
@@ -160,6 +160,8 @@ def export_ssp(
     structure, chosen = ready(system, scene, wishes)
     step = parallel_step(structure) if step is None else step
     step = make_grid(chosen.t_end, step, step).step
+    if late := told_late(system, structure, step):
+        _log.warning(late)
     own = [part for part in structure.parts if not part.foreign]
     if native:
         carried = {str(part.name): carried_files(part) for part in own}

@@ -1,6 +1,7 @@
 """Communication step for masters that step all FMUs in parallel, on held inputs."""
 
 import logging
+from pathlib import Path
 
 from herringbone.analysis.stability.steps.step_limits import step_limits
 from herringbone.analysis.stability.steps.step_scan import LARGEST_STEP
@@ -17,6 +18,18 @@ SHARE = 1.0 / 3.0
 UNKNOWN = 2e-6
 """Step [s] where the largest stable one is not known, as with foreign FMUs."""
 _log = logging.getLogger(__name__)
+
+
+def told_late(reference: str | Path, system: System, step: float) -> str:
+    """How to find what such masters err by a step [s]; "" where no part answers to another one."""
+    if not system.connections:
+        return ""
+    error = "--verify" if system.foreign_parts else "--reference"
+    return (
+        f"communication step {quantity(step, 's')}: masters that step all parts in parallel see "
+        f"elements one step late, and err in proportion to it: 'herringbone run {reference} "
+        f"--algorithm jacobi:order=0,schedule=parallel --step {step:g} {error}' tells by how much"
+    )
 
 
 def parallel_step(system: System) -> float:
