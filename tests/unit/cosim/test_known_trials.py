@@ -143,8 +143,10 @@ def test_that_a_part_was_lost_is_not_kept():
     def lost():
         raise Refused("no answer", lost=True)
 
+    known = KnownTrials(CONTENT, "there")
     with pytest.raises(Refused):
-        KnownTrials(CONTENT, "there").outcome(lost, "outputs", H, np.zeros((1, 1)))
+        known.outcome(lost, "outputs", H, np.zeros((1, 1)))
+    known.save()
     known = KnownTrials(CONTENT, "there")
     assert known.outcome(lambda: np.ones(1), "outputs", H, np.zeros((1, 1))) == 1.0
 
