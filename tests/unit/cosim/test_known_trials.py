@@ -6,8 +6,8 @@ import pytest
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component
 from herringbone.core import Instance
+from herringbone.core.caching import tried as caching
 from herringbone.core.caching.tried import forget_tried, tried_folder
-from herringbone.core.places.paths import CACHE_VARIABLE
 from herringbone.cosim.adapter import WithoutStates
 from herringbone.cosim.signature import Laboratory
 from herringbone.cosim.signature.known_trials import KnownTrials
@@ -23,7 +23,7 @@ TESTED = 2
 
 @pytest.fixture(autouse=True)
 def empty_cache(tmp_path, monkeypatch):
-    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setattr(caching, "cache_root", lambda: tmp_path / "cache")
 
 
 class Rotors:
@@ -143,8 +143,10 @@ def test_that_a_part_was_lost_is_not_kept():
     def lost():
         raise Refused("no answer", lost=True)
 
+    known = KnownTrials(CONTENT, "there")
     with pytest.raises(Refused):
-        KnownTrials(CONTENT, "there").outcome(lost, "outputs", H, np.zeros((1, 1)))
+        known.outcome(lost, "outputs", H, np.zeros((1, 1)))
+    known.save()
     known = KnownTrials(CONTENT, "there")
     assert known.outcome(lambda: np.ones(1), "outputs", H, np.zeros((1, 1))) == 1.0
 
