@@ -168,7 +168,7 @@ class Brake(CallbackPart):
     def __init__(self):
         super().__init__("brake", ["flange.w"], ["flange.tau"], nodes=False, state=False)
 
-    def step(self, t, h):  # noqa: ARG002
+    def step(self, t, h):
         speed = self["flange.w"]
         self["flange.tau"] = -60.0 * ((speed > 0.0) - (speed < 0.0))
         return OK
