@@ -158,7 +158,8 @@ def _doubt(feedthrough: np.ndarray, pulse: Pulses, found: Findings) -> None:
     """What is unknown after all: small answers of large outputs, and other inputs of bent ones."""
     for row in found.bent:
         feedthrough[row, pulse.delay[row] < 0] = np.nan
-    if pulse.memory is Answer.NO and feedthrough.size and not np.nan_to_num(feedthrough).any():
+    seen = found.bent or np.nan_to_num(feedthrough).any()
+    if pulse.memory is Answer.NO and feedthrough.size and not seen:
         found.note("its outputs change, but too little against their size, or with time alone")
 
 

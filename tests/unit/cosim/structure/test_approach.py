@@ -47,3 +47,34 @@ def test_steps_end_at_the_start_of_the_run(tapered):
     assert max(h for _, h in steps) <= 0.3e-3
     # What is held over the last step is off by half of it: a thousandth of a whole one.
     assert (steps[-1][1] < 1e-3 * steps[0][1]) == tapered
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_how_inputs_move_on_where_shafts_speed_up(share):
+    """As in the motion before: an angle at its own place in the step, its derivatives at once."""
+    onward = Approach(INPUTS, DURATION, 1e-3, share).onward
+    at = 0.2 + 0.02 * share
+    phi, w, f = onward.still + onward.moved(0.2, 0.02)
+    assert phi == pytest.approx(3.0 + SPEED * at + 0.5 * FASTER * at * at, rel=1e-12)
+    assert (w, f) == pytest.approx((SPEED + 0.21 * FASTER, 200.0), rel=1e-12)
+    first, second, third = onward.derivatives(0.2, 3).reshape(3, 3)
+    assert first == pytest.approx((SPEED + 0.2 * FASTER, FASTER, 0.0), rel=1e-12)
+    assert second == pytest.approx((FASTER, 0.0, 0.0), rel=1e-12) and not third.any()
+    assert onward.turning == (0,)
+
+
+def test_shafts_that_hardly_speed_up_turn_on_evenly():
+    """By less than a twentieth of their speed in half a second; from rest all that speeds up is
+    much."""
+    slow = 0.09 * SPEED
+
+    def of(speed, acceleration):
+        inputs = (
+            SteadyInput("phi", 3.0, speed, acceleration),
+            SteadyInput("w", speed, acceleration, begin=0.0, moves=True),
+        )
+        return Approach(inputs, DURATION, 1e-3).onward
+
+    assert of(SPEED, slow).derivatives(0.2, 2) == pytest.approx((SPEED, 0.0, 0.0, 0.0), rel=1e-12)
+    assert of(SPEED, 2.0 * slow).accelerations[0] == 2.0 * slow
+    assert of(0.0, slow).accelerations[0] == slow

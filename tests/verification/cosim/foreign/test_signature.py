@@ -7,6 +7,7 @@ import tomllib
 
 import pytest
 from support.foreign.kinds import KINDS
+from support.parts.fakes import OK, CallbackPart
 
 from herringbone.commands.main import main
 from herringbone.cosim.cell.policy import foreign_fmu_policy
@@ -159,3 +160,22 @@ def test_check_prints_it(kinds, capsys):
     assert "d(flange.tau)/d(flange.phi) = -80000" in said
     assert main(["check", str(kinds / "LiftCage.fmu")]) == 0
     assert "v = d(s)/dt does not hold: it is 1000 times that" in capsys.readouterr().out
+
+
+class Brake(CallbackPart):
+    """60 N m against the speed, whose sign decides."""
+
+    def __init__(self):
+        super().__init__("brake", ["flange.w"], ["flange.tau"], nodes=False, state=False)
+
+    def step(self, t, h):
+        speed = self["flange.w"]
+        self["flange.tau"] = -60.0 * ((speed > 0.0) - (speed < 0.0))
+        return OK
+
+
+def test_a_law_that_jumps_is_unknown_and_the_jump_is_why():
+    """The slope grows with the inverse of the change; that it answers too little is not told."""
+    it = signature_of(Brake(), Brake, 1e-4)
+    assert it.kind is Kind.UNKNOWN and it.memory is Answer.NO
+    assert [note for note in it.notes if "it is not linear there" in note] == list(it.notes)
