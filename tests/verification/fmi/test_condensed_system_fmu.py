@@ -15,6 +15,7 @@ from herringbone.core import Instance
 from herringbone.running.exporting.system_fmu import export_fmu
 
 STIFFNESS = "gearbox.bearing_supports.pinion.radial_stiffness"
+HELIX = "gearbox.gear_mesh.base_helix_angle"
 CLEARANCE = "gearbox.bearing_supports.pinion.radial_clearance"
 STEPS = (3.7e-4, 4.1e-5, 1e-6, 1e-3, 2.3e-4)
 
@@ -78,6 +79,20 @@ def test_what_has_no_condensed_form_is_told(rig, tmp_path):
     host.step(0.0, 1e-4)
     (line,) = [m for m in host.messages if "Runge-Kutta alone" in m]
     assert "the equations have no condensed form" in line
+
+
+@pytest.mark.parametrize(("tolerance", "told"), [(1e-5, 0), (1e-6, 1)])
+def test_parameters_of_another_pair_are_told(tolerance, told, rig, tmp_path):
+    """A helix that differs by 5e-5 is that of the table yet; ten times the tolerance is the limit.
+
+    Before the first step, as the host sets it before.
+    """
+    starts = {v.name: v.start for v in read_model_description(str(rig)).modelVariables}
+    helix = float(starts[HELIX])
+    host = Fmi2Host(rig, tmp_path, tolerance=tolerance, values={HELIX: helix * (1.0 + 5e-5)})
+    lines = [m for m in host.messages if "parameters are not those at export" in m]
+    assert len(lines) == told
+    assert all("helix of a gear pair" in line for line in lines)
 
 
 def names_of(rig):

@@ -32,8 +32,12 @@ _BENT = 6.0
 """Of the longest step, and the root of the tolerance: steps in which a law bends, unseen by the
 estimate; what a step errs there grows with the square of its length."""
 _SHARE = 0.1
-"""Of the tolerance that a step beside leaps may take: dozens of them lie close together where a
-law bends, and their errors add."""
+"""Of the tolerance that a step beside leaps may take.
+
+Errors add up until vibrations have decayed, and only those at knots of tables are as large as
+estimated: 0.23 of it in the mean, by where in a step the knot lies, of either sign. So n of them
+sum up to 0.23 times the root of n: to 7 for a thousand, which a pair that rattles on rigid ground
+meets in the 6 ms of its decay at a tolerance of 1e-8."""
 _NEARER = 0.25
 """Of a step in which a law bends, that is longer: the next one, from the same start."""
 
@@ -92,8 +96,8 @@ def _explicit_stepper(
     `following` is the place of the length of the next inner step [s].
     """
     n, slots = declaration.state_count, Slots.of(declaration.state_count)
-    x0, first, known = slots.x0, slots.first, slots.known
-    error_of = error_measure(declaration, slots)
+    x0, known = slots.x0, slots.known
+    error_of, go_on = error_measure(declaration, slots)
     runge_kutta = _runge_kutta(rhs, declaration, slots, set_inputs)
 
     @inner(declaration.name)
@@ -106,8 +110,7 @@ def _explicit_stepper(
         if w[known] == 0.0:
             set_inputs(b, w, degree, begin / h)
             rhs(b, t + begin, w[:n])
-            for i in range(n):
-                w[first + i] = w[i]
+            go_on(w, 0.0, False)
             w[known] = 1.0
         if follows:
             bent(b, w, t + begin, row)
@@ -125,8 +128,7 @@ def _explicit_stepper(
                     row, error, ahead = 1 - row, np.inf, _NEARER * hs
             if error <= 1.0:
                 done = end if count == 1.0 else done + hs
-                for i in range(n):
-                    w[first + i] = w[i]
+                go_on(w, hs, follows)
                 if count > 1.0 or ahead > b[following]:
                     b[following] = min(ahead, longest_step(b, w))
             else:
