@@ -100,43 +100,18 @@ def _ports(half: str) -> list[Variable]:
 
 
 def _parameters(gear: str) -> list[Variable]:
-    axial = _AXIAL_STIFFNESS[gear]
+    stiffness, damping = Quantity.STIFFNESS, Quantity.DAMPING
+    of_radial, of_axial = (_SHIPPED[f"{gear}.{q}_damping"] for q in ("radial", "axial"))
+    rows = (
+        ("radial_stiffness", "N/m", "per half", _RADIAL_STIFFNESS, stiffness),
+        ("radial_damping", "N.s/m", "per half", of_radial, damping),
+        ("axial_stiffness", "N/m", "see axial_per_shaft", _AXIAL_STIFFNESS[gear], stiffness),
+        ("axial_damping", "N.s/m", "as axial_stiffness", of_axial, damping),
+    )
     return [
-        parameter(
-            f"{gear}.radial_stiffness",
-            "N/m",
-            "per half",
-            _RADIAL_STIFFNESS,
-            minimum=0,
-            quantity=Quantity.STIFFNESS,
-            place=gear,
-        ),
-        parameter(
-            f"{gear}.radial_damping",
-            "N.s/m",
-            "per half",
-            _SHIPPED[f"{gear}.radial_damping"],
-            minimum=0,
-            quantity=Quantity.DAMPING,
-            place=gear,
-        ),
-        parameter(
-            f"{gear}.axial_stiffness",
-            "N/m",
-            "see axial_per_shaft",
-            axial,
-            minimum=0,
-            quantity=Quantity.STIFFNESS,
-            place=gear,
-        ),
-        parameter(
-            f"{gear}.axial_damping",
-            "N.s/m",
-            "as axial_stiffness",
-            _SHIPPED[f"{gear}.axial_damping"],
-            minimum=0,
-            quantity=Quantity.DAMPING,
-            place=gear,
+        *(
+            parameter(f"{gear}.{name}", unit, told, start, minimum=0, quantity=what, place=gear)
+            for name, unit, told, start, what in rows
         ),
         parameter(f"{gear}.radial_clearance", "m", "diametral clearance", 0.0, minimum=0),
     ]
