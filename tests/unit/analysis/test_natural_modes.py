@@ -135,3 +135,12 @@ def test_a_run_out_changes_no_frequency():
         for deviation in (0.0, 10e-6)
     )
     np.testing.assert_allclose(turning, still, rtol=1e-7)
+
+
+def test_places_for_modes_that_a_housing_has_not_are_no_eigenvalues(rig):
+    """The thesis' housing has four modes, the rig's sixty, and places are for more."""
+    files = {"modes": "thesis_modes.csv", "shapes": "thesis_shapes.csv"}
+    few = hb.modes("test_rig", values={f"modal_housing.{k}": v for k, v in files.items()})
+    assert rig.rates.size - few.rates.size == 60 - 4
+    assert few.others == rig.others == 3  # the turn of all, and two lags of the motors
+    assert f"{few.frequency_hz.min():.4g} to" in repr(few)

@@ -24,6 +24,7 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 from scipy.linalg import eig, matrix_balance
+from scipy.sparse.csgraph import connected_components
 
 from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.analysis.modes.linearised import Linearised, linearised, seen_row
@@ -47,7 +48,8 @@ class NaturalModes(Facts):
         shapes: (states, n) right vectors.
         participation: one row per mode, one column per part that has states; rows add up to 1.
         mesh_answer: (n, 2) see above: in phase, in the worst phases; 0 without gear pair.
-        others: how many eigenvalues do not oscillate.
+        others: how many eigenvalues do not oscillate; without those of places that a part keeps
+            for more data than it has, as a housing does for modes.
         notes: lines that the user should read.
     """
 
@@ -146,10 +148,11 @@ class NaturalModes(Facts):
         return None
 
     def _facts(self) -> dict[str, str]:
-        low, high = self.frequency_hz.min(initial=0.0), self.frequency_hz.max(initial=0.0)
+        found = self.frequency_hz
+        between = f", {found.min():.4g} to {found.max():.4g} Hz" if found.size else ""
         return {
             "system": self.system.name,
-            "modes": f"{self.rates.size}, {low:.4g} to {high:.4g} Hz",
+            "modes": f"{found.size}{between}",
             "not oscillating": str(self.others),
             "parts": ", ".join(self.participation.columns),
             "notes": "; ".join(self.notes),
@@ -173,7 +176,7 @@ def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
     fastest = np.abs(rates).max(initial=0.0)
     kept = np.flatnonzero(rates.imag > _SLOWEST * fastest)
     kept = kept[np.argsort(np.abs(rates[kept]), kind="stable")]
-    rates, others = rates[kept], int(rates.size - 2 * kept.size)
+    rates, others = rates[kept], int(rates.size - 2 * kept.size) - _unused(found.a)
     left, right = left[:, kept] / scale[:, None], right[:, kept] * scale[:, None]
     left = left / np.conj((left.conj() * right).sum(axis=0))
     shares = (left.conj() * right).real
@@ -189,3 +192,11 @@ def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
     largest = np.abs(found.mesh_out @ right).max(axis=0, initial=0.0) / np.abs(rates.real)
     answer = answers * largest[:, None]
     return NaturalModes(found, rates, right, participation, answer, others, tuple(notes))
+
+
+def _unused(a: np.ndarray) -> int:
+    """States joined to no other, that nothing moves: a position and its rate."""
+    count, label = connected_components(a != 0.0, directed=False)
+    groups = (np.flatnonzero(label == k) for k in range(count))
+    blocks = (a[np.ix_(own, own)] for own in groups)
+    return sum(len(block) for block in blocks if not (block @ block).any())
