@@ -1,7 +1,6 @@
 """Runs that are cut off, and what is left of them: for the tests of `--resume`."""
 
 import json
-import os
 
 import pytest
 
@@ -22,7 +21,6 @@ def write_often(monkeypatch):
     """Rows leave the memory, and checkpoints are taken, after every chunk of the loop."""
     monkeypatch.setattr(checkpoints, "SECONDS", 0.0)
     monkeypatch.setattr("herringbone.cosim.rows.stream.SELDOM", 0.0)
-    monkeypatch.setattr(os, "fsync", lambda descriptor: None)  # no machine loses its power here
     monkeypatch.setattr("herringbone.plotting.write_pictures", lambda result, folder: [])
 
 
