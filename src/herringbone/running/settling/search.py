@@ -54,6 +54,9 @@ class Search:
         known: the system without foreign parts.
         network: of all parts.
         strangers: the foreign ones.
+
+    Attributes:
+        began: foreign parts settle at the speed that was set, with which every search begins.
     """
 
     def __init__(self, known: System, network: Network, strangers: list[Stranger]) -> None:
@@ -61,6 +64,7 @@ class Search:
         self._links = Links(network, strangers)
         self._answering = Answering(self._links, strangers)
         self._declared, self._given = "", 0.0
+        self.began = False
 
     def found(self) -> SettledStart:
         """The start at the speed that was set; raises HerringboneError."""
@@ -129,7 +133,9 @@ class Search:
         for part in self._strangers:
             part.compare_with(motion.loads)
         still = self._answering.gentlest(self._answering.at_acceleration(motion, 0.0))
-        return still, self._answering.settled(still)
+        answer = self._answering.settled(still)
+        self.began = True
+        return still, answer
 
     def _take_declared_speed(self, motion: OwnMotion) -> bool:
         """Take the speed that foreign parts declare, if nothing else says one; True if it did."""

@@ -57,10 +57,11 @@ def _found(known: System, network: Network, strangers: list[Stranger]) -> Settle
             return Search(known, network, strangers).at_balance(farthest)
         return None
 
+    search = Search(known, network, strangers)
     try:
-        found = Search(known, network, strangers).found()
+        found = search.found()
     except NoSettledStartError:
-        if start := balanced(_FARTHEST):
+        if search.began and (start := balanced(_FARTHEST)):  # else it would fail alike
             return start
         raise
     return found if abs(found.acceleration) < PROBE else balanced(_NEAR) or found
