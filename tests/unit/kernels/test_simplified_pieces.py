@@ -63,3 +63,33 @@ def test_it_computes_the_same_bits(as_numba_writes_it):
             return summed(b)
 
         assert caller(values) == expected
+
+
+def test_a_call_that_falls_away_takes_nothing_from_other_callers():
+    """LLVM takes in what is called so far; what came too early was a call of address 0."""
+
+    @inner("test")
+    def shared(b):
+        return 2.0 * b[0]
+
+    @inner("test")
+    def order(signal):
+        if signal is None:
+            return 0
+        return 1
+
+    @inner("test")
+    def first(b):
+        if order(None) > 0:
+            return shared(b)
+        return b[1]
+
+    @inner("test")
+    def second(b):
+        return shared(b) + 1.0
+
+    @inner("test")
+    def caller(b):
+        return first(b) + second(b)
+
+    assert caller(np.array([3.0, 5.0])) == 12.0

@@ -24,7 +24,7 @@ import llvmlite.binding as llvm
 from numba import types
 from numba.core import compiler
 from numba.core.ccallback import CFunc
-from numba.core.codegen import CodeLibrary, JITCodeLibrary
+from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompileResult
 from numba.core.dispatcher import _FunctionCompiler
 from numba.core.registry import CPUDispatcher
@@ -37,7 +37,7 @@ from numba.core.untyped_passes import (
 )
 
 from herringbone.core.activity import COMPILING
-from herringbone.kernels.compiling.pieces import Hot, Piece, Rare, is_global
+from herringbone.kernels.compiling.pieces import Hot, Piece, Rare, callers_first, is_global
 from herringbone.kernels.compiling.quiet import quiet
 from herringbone.kernels.compiling.typed_calls import remembered_calls
 
@@ -76,12 +76,10 @@ class Whole(JITCodeLibrary):
 
     _tuning: Mapping[str, object] = MappingProxyType({})
 
-    def add_linking_library(self, library: CodeLibrary) -> None:
-        """Take in a library, and those that it needs."""
-        library._ensure_finalized()
-        reached = library.reached() if isinstance(library, Piece) else (library,)
-        known = set(self._linking_libraries)
-        self._linking_libraries += [x for x in dict.fromkeys(reached) if x not in known]
+    def finalize(self) -> None:
+        """Take in all libraries that are called, and those that they need."""
+        self._linking_libraries = callers_first(self._linking_libraries)
+        super().finalize()
 
     def _optimize_functions(self, ll_module: llvm.ModuleRef) -> None:
         ll_module.data_layout = self._codegen._data_layout

@@ -7,7 +7,7 @@ it, and calls other pieces by module, name and types: these names mean the same 
 What it leans on inside of numba is tested for every minor version that is admitted.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from typing import NamedTuple, Protocol
 from weakref import WeakKeyDictionary
 
@@ -140,11 +140,10 @@ class Piece(JITCodeLibrary):
         self._ensure_finalized()
         return 0
 
-    def reached(self) -> Iterator[CodeLibrary]:
-        """Itself and, as often as they are called, all libraries that it needs."""
-        yield self
-        for library in self._linking_libraries:
-            yield from library.reached() if isinstance(library, Piece) else (library,)
+    @property
+    def called(self) -> list[CodeLibrary]:
+        """The libraries that it calls, or called before it was made shorter."""
+        return self._linking_libraries
 
 
 class Rare(Piece):
@@ -157,6 +156,25 @@ class Hot(Piece):
     """As `Piece`, for products of matrices: native FMUs have it for wide vectors, too."""
 
     _marks = ("hot",)
+
+
+def callers_first(libraries: Iterable[CodeLibrary]) -> list[CodeLibrary]:
+    """Libraries and all that they need, each behind all that call it.
+
+    Of a library LLVM takes in what is called so far. A piece may have lost its calls of another one
+    when it was made shorter: by that piece alone, the other one would come in too early, and empty.
+    """
+    found: dict[CodeLibrary, None] = {}
+
+    def visit(library: CodeLibrary) -> None:
+        if library not in found:
+            for called in reversed(library.called if isinstance(library, Piece) else []):
+                visit(called)
+            found[library] = None
+
+    for library in reversed([*libraries]):
+        visit(library)
+    return [*reversed(found)]
 
 
 def _copy_of(library: CodeLibrary, number: int) -> tuple[Copy, dict[str, str]]:
