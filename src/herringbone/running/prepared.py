@@ -56,8 +56,8 @@ class Wishes:
 
     def __post_init__(self) -> None:
         """Check kinds; raises ParameterError."""
-        check_mapping("values", self.values, '{"gear_mesh.backlash": 1e-4}')
-        check_mapping("replace_parts", self.replace_parts, '{"drive_motor": "Motor.fmu"}')
+        check_mapping("values", self.values, '{"PART.VARIABLE": 1e-4}')
+        check_mapping("replace_parts", self.replace_parts, '{"PART": "Motor.fmu"}')
 
 
 class Prepared(NamedTuple):

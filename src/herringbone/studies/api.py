@@ -85,8 +85,8 @@ def sweep(
         HerringboneError: something about the input is wrong.
     """
     check_reference("system", system, "a name, a folder with system.toml, or an .ssp file")
-    check_mapping("values", values, '{"gear_mesh.backlash": 1e-4}')
-    check_mapping("vary", vary, '{"gear_mesh.backlash": [1e-4, 2e-4]}')
+    check_mapping("values", values, '{"PART.VARIABLE": 1e-4}')
+    check_mapping("vary", vary, '{"PART.VARIABLE": [1e-4, 2e-4]}')
     for name, several in {SPEED: speed, TORQUE: torque, **(vary or {})}.items():
         check_several(name, several)
     check_called("progress", progress)

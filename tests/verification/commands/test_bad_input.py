@@ -375,7 +375,7 @@ def test_foreign_housing_runs(tmp_path, capsys, stranger):
     summary = json.loads(capsys.readouterr().out)
     assert summary["model"]["gearbox.modal_housing"] == str(file)
     notes = [note for note in summary["notes"] if "gearbox.modal_housing" in note]
-    assert any("it is stepped over 0.08 s before the start" in note for note in notes)
+    assert any("it is stepped over 0.04 s before the start" in note for note in notes)
     assert any("and 35 more between these parts: a unit is not declared" in note for note in notes)
     assert any("a body by trial steps; it cannot repeat a step" in note for note in notes)
     table = pd.read_csv(tmp_path / "results.csv", comment="#")

@@ -24,7 +24,7 @@ import llvmlite.binding as llvm
 from numba import types
 from numba.core import compiler
 from numba.core.ccallback import CFunc
-from numba.core.codegen import JITCodeLibrary
+from numba.core.codegen import CodeLibrary, JITCodeLibrary
 from numba.core.compiler import CompileResult
 from numba.core.dispatcher import _FunctionCompiler
 from numba.core.registry import CPUDispatcher
@@ -75,6 +75,7 @@ class Whole(JITCodeLibrary):
     """Machine code of a function that is called from outside, with all pieces that it reaches."""
 
     _tuning: Mapping[str, object] = MappingProxyType({})
+    _linking_libraries: list[CodeLibrary]
 
     def finalize(self) -> None:
         """Take in all libraries that are called, and those that they need."""
