@@ -7,7 +7,6 @@ the numbers as they stand in memory, so that every bit is kept.
 import contextlib
 import hashlib
 import json
-import logging
 import math
 import os
 from collections.abc import Mapping
@@ -15,8 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.core.caching.files import write_file
-from herringbone.core.places.paths import is_trusted
+from herringbone.core.caching.files import is_sound, write_file
 
 Kept = np.ndarray | str
 """An array of float64, or a text."""
@@ -24,7 +22,6 @@ MOST_BYTES = 256_000_000
 """Of all files in a folder; those that were not used longest go first."""
 _DIGEST = hashlib.sha256().digest_size
 _NUMBER = np.dtype("<f8")
-_LOG = logging.getLogger("herringbone")
 
 
 def keep_arrays(file: Path, found: Mapping[str, Kept], most: int = MOST_BYTES) -> None:
@@ -52,15 +49,10 @@ def kept_arrays(file: Path) -> dict[str, Kept]:
     """
     try:
         whole = file.read_bytes()
-        trusted = is_trusted(file)
+        content = whole[_DIGEST:]
+        if not is_sound(file, content, whole[:_DIGEST].hex()):
+            return {}
     except OSError:
-        return {}
-    if not trusted:
-        _LOG.warning("%s is of another user, or others can write it; it is made anew", file)
-        return {}
-    content = whole[_DIGEST:]
-    if hashlib.sha256(content).digest() != whole[:_DIGEST]:
-        _LOG.warning("%s is damaged; it is made anew", file)
         return {}
     with contextlib.suppress(OSError):
         os.utime(file)

@@ -64,13 +64,22 @@ def read_stored(file: Path) -> bytes | None:
         stamp = _stamp(file).read_bytes()
     except OSError:
         return None
+    return content if is_sound(file, content, stamp.decode(errors="replace")) else None
+
+
+def is_sound(file: Path, content: bytes, digest: str) -> bool:
+    """True if a file is of this user, and its content has its digest; a line is logged if not.
+
+    Raises:
+        OSError: it is gone.
+    """
     if not is_trusted(file):
         _LOG.warning("%s is of another user, or others can write it; it is made anew", file)
-        return None
-    if hashlib.sha256(content).hexdigest().encode() == stamp:
-        return content
+        return False
+    if hashlib.sha256(content).hexdigest() == digest:
+        return True
     _LOG.warning("%s is damaged; it is made anew", file)
-    return None
+    return False
 
 
 def is_stored(file: Path) -> bool:
