@@ -13,4 +13,4 @@ typedef struct {
 static void reset(Model *m) { *m = (Model){.real = {[SHARE] = 1.0}}; }
 static void evaluate(Model *m) { m->real[TAU] = -m->real[SHARE] * m->real[W] * fabs(m->real[W]); }
 static Status step(Model *m, double t, double h) { return OK; }
-#include "fmi2_shell.h"
+#include "../fmi2_shell.h"

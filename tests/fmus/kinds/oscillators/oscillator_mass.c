@@ -42,4 +42,4 @@ static Status step(Model *m, double t, double h) {
     return OK;
 }
 #define INITIAL start
-#include "fmi2_shell.h"
+#include "../fmi2_shell.h"

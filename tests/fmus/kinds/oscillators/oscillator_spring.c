@@ -16,4 +16,4 @@ static void evaluate(Model *m) {
     r[FA] = -r[FB];
 }
 static Status step(Model *m, double t, double h) { return OK; }
-#include "fmi2_shell.h"
+#include "../fmi2_shell.h"

@@ -18,4 +18,4 @@ static Status step(Model *m, double t, double h) {
     m->integral += h * m->real[KI] * error(m);
     return OK;
 }
-#include "fmi2_shell.h"
+#include "../fmi2_shell.h"

@@ -43,4 +43,4 @@ static Status step(Model *m, double t, double h) {
     return OK;
 }
 #define INITIAL(c) start(c)
-#include "fmi2_shell.h"
+#include "../fmi2_shell.h"

@@ -21,4 +21,4 @@ static Status step(Model *m, double t, double h) {
     }
     return OK;
 }
-#include "fmi2_shell.h"
+#include "../fmi2_shell.h"

@@ -74,7 +74,7 @@ static Status step(Model *m, double t, double h) {
 }
 #define INITIAL start
 #define DERIVATIVES
-#include "fmi2_shell.h"
+#include "../fmi2_shell.h"
 
 EXPORT Status fmi2SetRealInputDerivatives(Component c, const unsigned *vr, size_t n,
                                           const int *order, const double *value) {
