@@ -37,6 +37,12 @@ def variants() -> tuple[Algorithm, ...]:
     return tuple(dict.fromkeys(a for kind in kinds for a in (*kind.variants(), *kind.charted())))
 
 
+ITERATED = [kind() for kind in ALGORITHMS.values() if "rollback" in kind.needs]
+"""Those that repeat steps, with their defaults."""
+STAGED = [a for a in variants() if not a.needs]
+"""Those that step each part once, whatever it can do, in all variants."""
+
+
 def every(claim: Callable[[Algorithm], bool] = lambda _: True) -> pytest.MarkDecorator:
     """Parametrise a test over all variants of which a claim is true."""
     return pytest.mark.parametrize("algorithm", [a for a in variants() if claim(a)], ids=str)

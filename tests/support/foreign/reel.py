@@ -70,6 +70,6 @@ def reels(folder: Path, name: str = "reels", *, saves: bool = True) -> Path:
         FMUS / "reel.c", description("reel", "f", "s v", "holds", saves=saves), found
     )
     told = description("c_spring_damper", "x1 x2 v1 v2", "f1 f2", saves=saves)
-    spring = compiled_fmu(FMUS / "kinds" / "c_spring_damper.c", told, found)
+    spring = compiled_fmu(FMUS / "kinds" / "translation" / "c_spring_damper.c", told, found)
     files = {"left": python_reel(found), "right": right, "spring": spring}
     return write_system(folder, name, JOINED, files)

@@ -1,24 +1,21 @@
-"""FMUs with variables of all types: recorded as fmpy does, set, connected, ended, with events."""
+"""Variables of all types: recorded as fmpy does, set, refused, connected."""
 
 import json
 import os
-import re
 import subprocess
 import sys
-import zipfile
 from pathlib import Path
 
 import fmpy
 import numpy as np
 import pandas as pd
 import pytest
-from support.foreign.all_types import EVENTS, KINDS, build_all_types
+from support.foreign.all_types import KINDS
+from support.foreign.all_types_runs import alone, refused, run, two
 
-import herringbone as hb
 from herringbone.commands.main import main
-from herringbone.core import HerringboneError, OutcomeKind
-from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.cosim.structure.system_file import read_system
+from herringbone.core import OutcomeKind
+from herringbone.cosim.structure.system import System
 
 SELECTOR = Path(__file__).parents[3] / "fmus" / "selector.py"
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="written for POSIX")
@@ -37,14 +34,6 @@ TYPES = {
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    """The FMU 3.0 without and with event mode."""
-    folders = {name: tmp_path_factory.mktemp(name) for name in ("plain", "events")}
-    abilities = {"plain": "", "events": EVENTS}
-    return {name: build_all_types(folder, abilities[name]) for name, folder in folders.items()}
-
-
-@pytest.fixture(scope="module")
 def selector(tmp_path_factory):
     """The FMU 2.0 of pythonfmu."""
     folder = tmp_path_factory.mktemp("selector")
@@ -53,32 +42,10 @@ def selector(tmp_path_factory):
     return folder / "Selector.fmu"
 
 
-def alone(file):
-    return System("one", "", (PartSpec("p", fmu=file),), ())
-
-
-def two(file, *connections):
-    return System("two", "", (PartSpec("a", fmu=file), PartSpec("b", fmu=file)), connections)
-
-
-def run(system, values, t_end=1.0, record_step=0.1, **options):
-    named = {name if "." in name else f"p.{name}": value for name, value in values.items()}
-    return hb.run(system, values=named, t_end=t_end, record_step=record_step, **options)
-
-
-def refused(said, *arguments, **options):
-    with pytest.raises(HerringboneError, match=re.escape(said)) as error:
-        run(*arguments, **options)
-    assert "\n" not in str(error.value)
-
-
-# -- records and start values ---------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("name", ["plain", "events"])
-def test_all_types_are_recorded_without_loss(files, name, tmp_path):
+def test_all_types_are_recorded_without_loss(all_types, name, tmp_path):
     values = {f"{kind}_in": value for kind, value in LARGE.items()}
-    result = run(alone(files[name]), values)
+    result = run(alone(all_types[name]), values)
     for kind, value in LARGE.items():
         column = result.data[f"p.{kind}_out"]
         expected = np.float32(value) if kind == "Float32" else value
@@ -94,7 +61,7 @@ def test_all_types_are_recorded_without_loss(files, name, tmp_path):
 
 @pytest.mark.parametrize("every", [0.0, 0.125, 0.1625])
 @pytest.mark.parametrize("name", ["plain", "events"])
-def test_same_bits_as_fmpy(files, name, every):
+def test_same_bits_as_fmpy(all_types, name, every):
     """With equal event settings; fmpy has further rows, at the events.
 
     The step is a power of two: fmpy takes the difference of two times as a step.
@@ -103,10 +70,10 @@ def test_same_bits_as_fmpy(files, name, every):
     start = {f"{kind}_in": v for kind, v in LARGE.items() if kind not in {"String", "Binary"}}
     start |= {"every": every, "u": [1.0, 0.7], "pair": [5, 6], "d": 0.3}
     theirs = fmpy.simulate_fmu(
-        str(files[name]), start_values=start, stop_time=1.0, output_interval=0.125,
+        str(all_types[name]), start_values=start, stop_time=1.0, output_interval=0.125,
         use_event_mode=events, early_return_allowed=events,
     )  # fmt: skip
-    ours = run(alone(files[name]), start, record_step=0.125)
+    ours = run(alone(all_types[name]), start, record_step=0.125)
     last = {round(t, 9): k for k, t in enumerate(theirs["time"])}
     rows = [last[round(t, 9)] for t in ours.data["time"]]
     compared = 0
@@ -120,19 +87,19 @@ def test_same_bits_as_fmpy(files, name, every):
     assert ours.data["p.events"].iloc[-1] == (0 if every == 0.0 else int(1.0 / every + 1e-9))
 
 
-def test_structural_parameter_resizes_arrays(files):
+def test_structural_parameter_resizes_arrays(all_types):
     """y is the integral of u; what is set first or last does not matter."""
-    result = run(alone(files["plain"]), {"u": [1, 2, 3, 4], "u[2]": 5, "n": 4, "m": "1 2 3 5"})
+    result = run(alone(all_types["plain"]), {"u": [1, 2, 3, 4], "u[2]": 5, "n": 4, "m": "1 2 3 5"})
     found = [result.data[f"p.y[{k}]"].iloc[-1] for k in (1, 2, 3, 4)]
     np.testing.assert_allclose(found, [1.0, 5.0, 3.0, 4.0], rtol=1e-14)
     turned = [result.data[f"p.turned[{i},{k}]"][0] for i in (1, 2) for k in (1, 2)]
     assert turned == [1.0, 3.0, 2.0, 5.0]
-    assert "p.y[3]" not in run(alone(files["plain"]), {}).data
+    assert "p.y[3]" not in run(alone(all_types["plain"]), {}).data
 
 
-def test_values_of_toml_and_command_line(files, tmp_path, capsys):
+def test_values_of_toml_and_command_line(all_types, tmp_path, capsys):
     (tmp_path / "system.toml").write_text(
-        f'[parts.p]\nfmu = "{files["plain"]}"\n'
+        f'[parts.p]\nfmu = "{all_types["plain"]}"\n'
         'set = { n = 3, u = [1.0, 2.0, 3.0], Boolean_in = true, Enumeration_in = "second",'
         " Int64_in = 9007199254740993 }\n"
     )
@@ -170,20 +137,18 @@ def test_values_of_toml_and_command_line(files, tmp_path, capsys):
         ({"n": 5}, "p.n = 5: n is at most 4"),
     ],
 )
-def test_wrong_values_are_refused(files, values, said):
-    refused(said, alone(files["plain"]), values)
+def test_wrong_values_are_refused(all_types, values, said):
+    refused(said, alone(all_types["plain"]), values)
 
-
-# -- connections ----------------------------------------------------------------------------------
 
 ALL = [(f"a.{kind}_out", f"b.{kind}_in") for kind in KINDS]
 
 
 @pytest.mark.parametrize("algorithm", ["jacobi:order=0", "jacobi:order=2", "li", "fixed_point"])
 @pytest.mark.parametrize("name", ["plain", "events"])
-def test_connected_types_hold_over_a_step(files, name, algorithm):
+def test_connected_types_hold_over_a_step(all_types, name, algorithm):
     """a counts events every 35 ms; b shows a step later what a showed, in steps of 10 ms."""
-    system = two(files[name], *ALL[:4], *ALL[5:], ("a.events", "b.Int32_in"), ("a.y", "b.u"))
+    system = two(all_types[name], *ALL[:4], *ALL[5:], ("a.events", "b.Int32_in"), ("a.y", "b.u"))
     system = System("t", "", system.parts, (*system.connections, ("a.swapped", "b.pair")))
     values = {f"a.{kind}_in": value for kind, value in LARGE.items()}
     values |= {"a.every": 0.035, "a.u": [1.0, 2.0], "a.pair": [3, 4]}
@@ -199,19 +164,19 @@ def test_connected_types_hold_over_a_step(files, name, algorithm):
     assert any("held over the step" in note for note in result.info.notes)
 
 
-def test_integers_reach_wider_types_and_reals(files):
+def test_integers_reach_wider_types_and_reals(all_types):
     """A real input takes them at communication points, also beside those of the loop."""
     wide = [("a.events", "b.Int64_in"), ("a.events", "b.d"), ("a.Int16_out", "b.Float32_in")]
     values = {"a.every": 0.1, "a.Int16_in": -7}
-    result = run(two(files["plain"], *wide), values, t_end=1.0, step=0.05)
+    result = run(two(all_types["plain"], *wide), values, t_end=1.0, step=0.05)
     assert result.data["b.Int64_out"].iloc[-1] == 9
     assert result.data["b.d_out"].iloc[-1] == 9.0
     assert result.data["b.Float32_out"].iloc[-1] == np.float32(-7.0)
 
 
 @pytest.mark.parametrize("name", ["plain", "events"])
-def test_value_that_is_refused_ends_the_run_with_its_results(files, name):
-    system = two(files[name], ("a.UInt64_out", "b.UInt64_in"), ("a.y", "b.u"))
+def test_value_that_is_refused_ends_the_run_with_its_results(all_types, name):
+    system = two(all_types[name], ("a.UInt64_out", "b.UInt64_in"), ("a.y", "b.u"))
     values = {"a.UInt64_in": 13, "a.u": [1.0, 2.0]}
     result = run(system, values, t_end=1.0, step=0.1, algorithm="li")
     assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.PART_FAILED, "b")
@@ -219,8 +184,8 @@ def test_value_that_is_refused_ends_the_run_with_its_results(files, name):
     assert result.data["a.y[2]"].tolist() == pytest.approx([0.0, 0.2], rel=1e-12)
 
 
-def test_adaptive_step_exchanges_at_its_own_points(files):
-    system = two(files["plain"], ("a.y", "b.u"), ("b.y", "a.u"), ("a.events", "b.Int32_in"))
+def test_adaptive_step_exchanges_at_its_own_points(all_types):
+    system = two(all_types["plain"], ("a.y", "b.u"), ("b.y", "a.u"), ("a.events", "b.Int32_in"))
     options = {"algorithm": "li", "tolerance": 1e-3, "step": 0.01, "record_step": 1e-4}
     result = run(system, {"a.every": 0.035}, t_end=0.2, **options)
     counted = result.data["a.events"].to_numpy()
@@ -237,11 +202,8 @@ def test_adaptive_step_exchanges_at_its_own_points(files):
         (("a.Boolean_out", "b.Int8_in"), "a Boolean does not fit into a Int8 without loss"),
     ],
 )
-def test_what_does_not_fit_is_refused(files, connection, said):
-    refused(said, two(files["plain"], connection), {})
-
-
-# -- FMI 2.0 --------------------------------------------------------------------------------------
+def test_what_does_not_fit_is_refused(all_types, connection, said):
+    refused(said, two(all_types["plain"], connection), {})
 
 
 def test_types_of_fmi2(selector):
@@ -255,102 +217,3 @@ def test_types_of_fmi2(selector):
     assert [str(result.data[f"a.{n}"].dtype) for n in ("steps", "engaged_shown")] == [
         "int32", "bool"
     ]  # fmt: skip
-
-
-# -- the end, and events --------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", ["plain", "events"])
-@pytest.mark.parametrize("end", [0.5, 0.45])
-def test_part_that_ends_the_simulation(files, name, end):
-    """Alone it is recorded where it ends; its last step is the last."""
-    result = run(alone(files[name]), {"end": end, "u": [1.0, 0.0]})
-    assert result.outcome.kind is OutcomeKind.ENDED
-    assert result.outcome.message == f"p ended the simulation at {end:g} s"
-    assert result.data["time"].iloc[-1] == pytest.approx(end, rel=1e-12)
-    assert result.data["p.y[1]"].iloc[-1] == pytest.approx(end, rel=1e-12)
-    assert len(result.data) == 6
-
-
-@pytest.mark.parametrize("algorithm", ["jacobi:order=0", "li"])
-def test_one_of_two_parts_ends(files, algorithm, tmp_path, capsys):
-    """Results up to there are kept, and the command succeeds: that end was wanted."""
-    (tmp_path / "system.toml").write_text(
-        'connections = [["a.y", "b.u"]]\n[parts]\n'
-        + "".join(f'{part} = {{ fmu = "{files["plain"]}" }}\n' for part in "ab")
-    )
-    options = ["--algorithm", algorithm, "--step", "0.01", "--t-end", "1", "--record-step", "0.1"]
-    values = ["--set", "b.end=0.5", "--set", "a.u=1 2"]
-    output = ["--json", "-o", str(tmp_path / "out")]
-    assert main(["run", str(tmp_path), *options, *values, *output]) == 0
-    found, said = capsys.readouterr()
-    summary = json.loads(found)
-    assert (summary["outcome"], summary["culprit"]) == ("ended_by_part", "b")
-    assert "ended_by_part: b ended the simulation at 0.5 s" in said
-    rows = pd.read_csv(tmp_path / "out" / "results.csv", comment="#")
-    np.testing.assert_allclose(rows["time"], np.arange(6) * 0.1, rtol=1e-12)
-    np.testing.assert_allclose(rows["a.y[2]"], np.arange(6) * 0.2, rtol=1e-12)
-
-
-def test_events_that_never_settle(files):
-    refused("its discrete states do not settle", alone(files["events"]), {"restless": 1.0})
-
-
-def test_events_inside_a_step_do_not_change_what_is_integrated(files):
-    """13 events in steps of 0.1 s: early returns and the rests of the steps make whole steps."""
-    result = run(alone(files["events"]), {"every": 0.073, "u": [1.0, 2.0]})
-    assert result.data["p.events"].iloc[-1] == 13
-    assert result.data["p.y[2]"].iloc[-1] == pytest.approx(2.0, rel=1e-12)
-
-
-def edited_copy(file, folder, old, new):
-    """The FMU alone, with another description."""
-    with zipfile.ZipFile(file) as whole, zipfile.ZipFile(folder / "x.fmu", "w") as copy:
-        for name in whole.namelist():
-            data = whole.read(name)
-            copy.writestr(name, data.replace(old, new) if name.endswith(".xml") else data)
-    return alone(folder / "x.fmu")
-
-
-def test_event_mode_that_is_declared_and_refused_is_not_used(files, tmp_path):
-    system = edited_copy(files["events"], tmp_path, b'Token="t"', b'Token="no events"')
-    result = run(system, {"every": 0.13})
-    assert result.outcome.completed
-    assert result.data["p.events"].iloc[-1] == 7
-
-
-def test_adaptive_run_ends_where_a_part_ends(files):
-    system = two(files["plain"], ("a.y", "b.u"), ("b.y", "a.u"))
-    options = {"algorithm": "li", "tolerance": 1e-3, "step": 0.01, "record_step": 1e-3}
-    result = run(system, {"b.end": 0.1}, t_end=0.2, **options)
-    assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.ENDED, "b")
-    assert result.outcome.time == pytest.approx(0.1, rel=1e-9)
-
-
-def test_descriptions_that_are_refused(files, tmp_path):
-    def edited(old, new):
-        return edited_copy(files["plain"], tmp_path, old, new)
-
-    clock = b'<Clock name="tick" valueReference="300" causality="input"'
-    clock += b' intervalVariability="triggered"/></ModelVariables>'
-    refused("has Clock variables, which are not supported: tick",
-            edited(b"</ModelVariables>", clock), {})  # fmt: skip
-    refused("array 'm' has 10000000000 elements; 100000 are possible at the most",
-            edited(b'<Dimension start="2"/><Dimension start="2"/>',
-                   b'<Dimension start="100000"/><Dimension start="100000"/>'), {})  # fmt: skip
-    refused("variable 'Enumeration_in': an item of 'Gear' has no whole number",
-            edited(b'name="second" value="2"', b'name="second" value="two"'), {})  # fmt: skip
-    start = b'valueReference="10" causality="input" variability="discrete" start="0"'
-    refused("variable 'Int8_in': its start value 'x' is no Int8",
-            edited(start, start.replace(b'"0"', b'"x"')), {"Int8_in": 1})  # fmt: skip
-    refused("is for scheduled execution only; co-simulation is needed",
-            edited(b"<CoSimulation", b"<ScheduledExecution"), {})  # fmt: skip
-
-
-def test_exported_structure_has_no_place_for_the_types_of_fmi3(files, tmp_path):
-    (tmp_path / "system.toml").write_text(
-        'connections = [["a.Int8_out", "b.Int8_in"]]\n[parts]\n'
-        + "".join(f'{part} = {{ fmu = "{files["plain"]}" }}\n' for part in "ab")
-    )
-    assert len(read_system(tmp_path).connections) == 1
-    assert main(["export", str(tmp_path), "-o", str(tmp_path / "x.ssp")]) == 2

@@ -25,7 +25,7 @@ from herringbone.scenes import Start
 STEP = 4e-5
 SYNCHRONOUS, BREAKDOWN, SLIP = 100.0, 900.0, 0.12
 LAG, INERTIA, STIFFNESS, DAMPING = 5e-3, 0.4, 6e4, 40.0
-"""Of `tests/fmus/kinds/c_slip_motor.c`."""
+"""Of `tests/fmus/kinds/rotation/c_slip_motor.c`."""
 SHARE = 0.6
 SHAFT = 'coupling = { component = "shaft_coupling", set = { stiffness = 3e5, damping = 50.0 } }'
 

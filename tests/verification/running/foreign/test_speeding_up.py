@@ -18,7 +18,7 @@ from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.start import known_parts
 
 MOTOR = 0.12
-"""Inertia of the rotor of `tests/fmus/kinds/c_e_drive.c` [kg m2]."""
+"""Inertia of the rotor of `tests/fmus/kinds/rotation/c_e_drive.c` [kg m2]."""
 STEP = 6.6e-4
 """Macro step [s] at which teeth that carry next to nothing, and have no damping, vibrate."""
 EXACT = 15.0 * 5e-6 / MOTOR
