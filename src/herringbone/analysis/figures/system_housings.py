@@ -5,12 +5,12 @@ from pathlib import Path
 
 from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.analysis.figures.misfits.housings import seats_elsewhere
-from herringbone.analysis.figures.modal_response import housing_in
+from herringbone.analysis.figures.modal_response import housing_at, housing_in
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError, ResourceError
 from herringbone.core.declaring.roles import GEARS, PortKind, Quantity, Role
 from herringbone.cosim.structure.system import System
-from herringbone.housing import ModalHousing, read_housing
+from herringbone.housing import ModalHousing
 from herringbone.housing.files.file_format import MODES
 from herringbone.housing.files.plausibility import implausible
 
@@ -20,13 +20,14 @@ def data_of(system: System, part: str) -> ModalHousing:
 
     Raises:
         ParameterError: they are not known, or not of the neutral format.
+        ResourceError: they cannot be read.
     """
     file = _file(system, part, Quantity.MODES)
     if file is None:
         raise ParameterError(f"{part}: the modal data of a foreign part are not known")
     if file.name != MODES:
         raise ParameterError(f"{part}: {file} is not of the format modal-housing")
-    return read_housing(file.parent)
+    return housing_at(file.parent)
 
 
 def _file(system: System, part: str, quantity: Quantity) -> Path | None:
