@@ -66,6 +66,8 @@ _SCALES: dict[str, tuple[tuple[float, float, str], ...]] = {  # from which peak,
     "W": ((2e4, 1e-3, "kW"), (0.0, 1.0, "W")),
 }
 _POINTS = 1600
+_ALIKE = 1.05
+"""Ratio of ranges up to which two signals may be each other's halves."""
 _LARGEST = 1e30  # a diverged run is drawn up to here
 
 P = ParamSpec("P")
@@ -152,9 +154,16 @@ def envelope(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def depths(values: np.ndarray) -> np.ndarray:
-    """Drawing order of signals (n, m): the smaller its range, the more in front."""
-    rank = np.argsort(np.argsort(-np.ptp(values, axis=0))) if values.size else 0.0
-    return 2.0 + np.broadcast_to(rank, values.shape[1]) / max(values.shape[1], 1)
+    """Drawing order of signals (n, m): the smaller its range, the more in front.
+
+    Of ranges that are alike the later one is in front: dashes over the line that they nearly cover.
+    """
+    ranges = np.ptp(values, axis=0) if values.size else np.zeros(values.shape[1])
+    order: list[int] = []
+    for k in np.argsort(-ranges, kind="stable").tolist():
+        at = next((n for n, o in enumerate(order) if ranges[o] <= _ALIKE * ranges[k]), len(order))
+        order.insert(at + sum(o < k for o in order[at:]), k)
+    return 2.0 + np.argsort(order) / max(len(order), 1)
 
 
 def legend(axes: Axes, columns: int = 1, lift: float = 0.0) -> None:

@@ -72,10 +72,10 @@ def load_scene(folder: str | Path, scene: str | Path | Scene | None) -> Scene:
 
 def with_options(
     scene: Scene,
-    t_end: float | None,
-    record_step: float | None,
-    start: str | None,
-    values: Mapping[str, float | str | Path] | None,
+    t_end: float | None = None,
+    record_step: float | None = None,
+    start: str | None = None,
+    values: Mapping[str, float | str | Path] | None = None,
 ) -> Scene:
     """The scene with what the caller overrides; files by names relative to the working folder.
 

@@ -3,22 +3,18 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from herringbone.analysis.figures.sensing.sensors import check_sensors
 from herringbone.analysis.figures.system_housings import implausible_housings
-from herringbone.core import EquilibriumError, ParameterError
-from herringbone.core.declaring.roles import Role
+from herringbone.core import EquilibriumError
 from herringbone.core.given import check_mapping
-from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
-from herringbone.running.chosen_parts import part_for
+from herringbone.running.fitted import with_files
 from herringbone.running.housings.fmu_remarks import HousingRemarks
-from herringbone.running.housings.given import split_housings, with_housing_data
 from herringbone.running.housings.rigid_ground import driven_one_way
-from herringbone.running.loading import load_scene, load_system, with_options, with_replacements
+from herringbone.running.loading import load_scene, load_system, with_options
 from herringbone.running.operating.lean import refuse_lean
-from herringbone.running.pairs.gears import Gear, with_gears
+from herringbone.running.pairs.gears import Gear
 from herringbone.running.pairs.impacts import with_impacts
 from herringbone.running.pairs.open_flanges import balanced, unbalanced
 from herringbone.running.start import started
@@ -99,66 +95,16 @@ def prepared(
     if not w.lean:
         refuse_lean(chosen)
     check(chosen)
-    gears: dict[str, Gear] = _merged(
-        structure, Role.GEAR_PAIR, structure.gears, chosen.gears, _by_path(w.gear)
-    )
-    housings = housings_of(structure, chosen, w)
-    if (gears or housings) and is_ssp(Path(folder)):
-        raise ParameterError(
-            f"{folder}: an .ssp file sets all values by name; --gear and --housing are of systems"
-        )
-    data, fmus = split_housings(housings)
-    structure, remarks = with_replacements(structure, {**w.replace_parts, **fmus}, probe=w.probe)
-    for own in remarks:
+    found = with_files(structure, chosen, w, Path(folder))
+    for own in found.remarks:
         remarked(own)
-    of_housings = [line for own in remarks for line in own.lines]
-    structure = with_housing_data(structure, data).with_values(chosen.values)
-    check_sensors(structure)
-    structure, jobs, said = with_gears(structure, gears)
-    structure = balanced(structure)
+    structure = balanced(found.system)
     lines = (*unbalanced(structure), *driven_one_way(structure))
     try:
         structure, notes = started(structure, chosen, trial_step)
     except EquilibriumError as error:
         lines = (*lines, *implausible_housings(structure))
         raise EquilibriumError("; ".join((*lines, str(error)))) from error
-    structure, impacts = with_impacts(structure, jobs)
-    return Prepared(structure, chosen, (*said, *lines, *notes, *impacts, *of_housings))
-
-
-def housings_of(system: System, scene: Scene, wishes: Wishes) -> dict[str, str | Path]:
-    """Data, dimensions or FMUs of housings by their whole paths; raises ParameterError."""
-    return _merged(system, Role.HOUSING, system.housings, scene.housings, _by_path(wishes.housing))
-
-
-def _merged(system: System, role: Role, *levels: Mapping[str, Any]) -> dict[str, Any]:
-    """What is given for parts of a role, by their whole paths; a later level holds.
-
-    Raises:
-        ParameterError: see `part_for`; or one level gives a part twice, by different paths.
-    """
-    found: dict[str, Any] = {}
-    for level in levels:
-        own: dict[str, Any] = {}
-        for path, given in level.items():
-            part = part_for(system, role, path, _called(role, given))
-            if part in own:
-                raise ParameterError(
-                    f"{_called(role, given)}: {part} has {_called(role, own[part])} already; "
-                    "give one of them"
-                )
-            own[part] = given
-        found |= own
-    return found
-
-
-def _called(role: Role, given: object) -> str:
-    """What messages call a file of a role; of what is no file they say the role alone."""
-    return f"{role} {given}" if isinstance(given, str | Path) else role
-
-
-def _by_path(given: object) -> dict:
-    """What is given for each part by its path; "": for the only one."""
-    if given is None:
-        return {}
-    return dict(given) if isinstance(given, Mapping) else {"": given}
+    structure, impacts = with_impacts(structure, found.jobs)
+    notes = (*found.notes, *lines, *notes, *impacts, *found.of_fmus)
+    return Prepared(structure, chosen, notes)

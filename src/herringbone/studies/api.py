@@ -12,7 +12,8 @@ from herringbone.core.declaring.roles import Role
 from herringbone.core.given import check_called, check_mapping, check_reference, check_several
 from herringbone.core.places.files import as_texts, is_file
 from herringbone.cosim.structure.system import System
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.fitted import with_files
+from herringbone.running.loading import load_scene, load_system, with_options
 from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.running.output.settings import key_of
 from herringbone.running.pairs.gears import Gear
@@ -75,7 +76,8 @@ def sweep(
         parquet: write the table as Parquet as well.
         output: folder; what it has of the study is not computed again. None: nothing is kept.
         overwrite: the table of another study in the folder may be replaced.
-        told: called with lines on what is ahead, and on what is not known of a leaner model.
+        told: called with lines on what is ahead, on gears and housings, and on what is not known of
+            a leaner model.
         progress: True for a bar; or called with the number of points that were done since.
 
     Returns:
@@ -111,7 +113,10 @@ def sweep(
     units |= {SPEED: study.speed_unit} if SPEED in units else {}
     first = study.point(0)
     commanded(known.with_values({n: v for n, v in first.items() if n not in SET_POINTS}), first)
-    for line in leaner_notes(chosen_scene.model, study, wishes.values):
+    own = with_options(chosen_scene, values=wishes.values)
+    files = with_files(structure, own, wishes, folder)
+    leaner = leaner_notes(chosen_scene.model, study, wishes.values)
+    for line in (*files.notes, *files.of_fmus, *leaner):
         told(line)
     settings = base_settings(base, chosen)
     asked = Asked(

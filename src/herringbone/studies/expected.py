@@ -23,23 +23,35 @@ class Expected:
 
     Attributes:
         points, chains: of the study.
-        missing: points that are not there yet.
-        cpu: time that these take [s].
+        there: points that were there before.
+        per_point: CPU time of one [s].
         size: of all files in the end [bytes].
     """
 
     points: int
     chains: int
-    missing: int
-    cpu: float
+    there: int
+    per_point: float
     size: float
 
-    def __str__(self) -> str:
-        there = self.points - self.missing
-        known = f", of which {there} are there" if there else ""
+    @property
+    def cpu(self) -> float:
+        """CPU time of all that were not there, those included that were tried to tell it [s]."""
+        return self.per_point * (self.points - self.there)
+
+    def told(self, where: str) -> str:
+        """A line before it is computed.
+
+        Args:
+            where: it is, such as "in this process".
+        """
+        points = _counted(self.points, "point")
+        if self.there == self.points:
+            return f"{points}: all there, nothing to compute"
+        known = f" ({self.there} of them there)" if self.there else ""
         return (
-            f"{_counted(self.points, 'point')} in {_counted(self.chains, 'chain')}{known}; about "
-            f"{lasting(self.cpu)} of CPU time, {self.size / _MEBIBYTE:.2g} MiB"
+            f"{points}{known} in {_counted(self.chains, 'chain')}; about {lasting(self.cpu)} of "
+            f"CPU time {where}, {self.size / _MEBIBYTE:.2g} MiB of files"
         )
 
 
@@ -47,17 +59,17 @@ def _counted(count: int, what: str) -> str:
     return f"{count} {what}" + "s" * (count != 1)
 
 
-def expected(points: int, chains: int, missing: int, known: Sequence[Done]) -> Expected:
+def expected(points: int, chains: int, there: int, known: Sequence[Done]) -> Expected:
     """What a study costs by what some of its points did.
 
     Args:
         points, chains: of the study.
-        missing: points that are not there yet.
+        there: points that were there before.
         known: chains or parts of them that were computed, at least one.
     """
     cpu = median(each.cpu / len(each.rows) for each in known)
     size = median(_size(each) / len(each.rows) for each in known)
-    return Expected(points, chains, missing, cpu * missing, size * points)
+    return Expected(points, chains, there, cpu, size * points)
 
 
 def longest_period(known: Sequence[Done]) -> float:

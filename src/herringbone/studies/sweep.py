@@ -138,7 +138,8 @@ def computed(
         chains = chains_of(study, base, evaluator, asked.key)
         there = [store.has(chain, series=asked.series) for chain in chains]
         missing = [chain for chain, known in zip(chains, there, strict=True) if not known]
-        progress(sum(len(c.keys) for c in chains) - sum(len(c.keys) for c in missing))
+        before = len(study.points) - _points_of(missing)
+        progress(before)
 
         def job(numbers: Sequence[int]) -> Job:
             points = tuple(study.point(number) for number in numbers)
@@ -147,10 +148,11 @@ def computed(
         known = [store.read(c) for c in list(compress(chains, there))[:_KNOWN]]
         if not known:
             missing, known = measured(missing, job, store, progress)
-        ahead = expected(len(study.points), len(chains), sum(len(c.keys) for c in missing), known)
+        ahead = expected(len(study.points), len(chains), before, known)
         check_room(ahead, place)
-        where = stack.enter_context(working(workers, ahead.cpu, len(missing)))
-        told(f"{ahead} {where.told}")
+        left = ahead.per_point * _points_of(missing)
+        where = stack.enter_context(working(workers, left, len(missing)))
+        told(ahead.told(where.told))
         if (meshes := longest_period(known)) >= _LONG:
             told(
                 f"run-outs make the period up to {meshes:.0f} mesh periods long, which is what "
@@ -165,6 +167,10 @@ def computed(
         table = study_table(study, chains, store, asked.given)
         files = table.write(place, parquet=asked.parquet) if asked.output else []
         return Sweep(table.data, table.units, ahead, tuple(files), asked.of)
+
+
+def _points_of(chains: Sequence[Chain]) -> int:
+    return sum(len(chain.keys) for chain in chains)
 
 
 def _interrupted(

@@ -5,7 +5,9 @@ import json
 import pandas as pd
 import pytest
 
+import herringbone as hb
 from herringbone.commands.main import BAD_INPUT, main
+from herringbone.core.declaring.units import R_MIN
 
 GEARBOX = ["sweep", "gearbox", "--speed", "900:1000:2", "--torque", "150"]
 
@@ -22,8 +24,12 @@ def test_a_table_in_the_units_that_were_asked_for(tmp_path, capsys):
     assert table["gear_mesh.symmetry_deviation"].tolist() == [0.0, 0.0, 1e-6, 1e-6]
     units = pd.read_csv(folder / "units.csv").set_index("column")["unit"]
     assert (units["speed"], units["gear_mesh.symmetry_deviation"]) == ("r/min", "m")
+    state = hb.steady("gearbox", speed=1000.0 / R_MIN, torque=150.0)
+    assert table["radiated_power"][1] == pytest.approx(hb.radiated_power(state).level_db, abs=0.01)
     parquet = pd.read_parquet(folder / "table.parquet")
     assert parquet["bearing_force.rms"].tolist() == table["bearing_force.rms"].tolist()
+    assert main([*GEARBOX, *varied, "-o", str(folder), "--parquet"]) == 0
+    assert "4 points: all there, nothing to compute" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from herringbone.plotting import (
     torques,
     write_pictures,
 )
-from herringbone.plotting.style import envelope, scaled_unit
+from herringbone.plotting.style import depths, envelope, scaled_unit
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +63,15 @@ def test_seat_velocities_are_in_millimetres_per_second(rig):
     column = rig["modal_housing.pinion_left.v_x"].to_numpy()
     assert last.lines[0].get_ydata()[-1] == pytest.approx(1e3 * column[-1])
     assert "[mm/s]" in last.get_ylabel()
+
+
+def test_a_right_half_that_its_left_one_covers_is_in_front():
+    """Ranges that are nearly the same: dashes are seen over the line, and small over large."""
+    wave = np.sin(np.linspace(0.0, 6.0, 50))
+    left, right, wheel = 41.0 * wave, 41.9 * wave, 8.0 * wave
+    for first, second in ((left, right), (right, left)):
+        depth = depths(np.column_stack([first, second, wheel, wheel]))
+        assert np.all(np.diff(depth) > 0.0)
 
 
 def test_spectra_mark_the_mesh_orders(rig):

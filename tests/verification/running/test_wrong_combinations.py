@@ -24,6 +24,7 @@ DESIGN = component_folder("modal_housing") / "welded_housing.toml"
 SHIPPED_TABLE = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"
 SHIPPED = "z 27/81, base radii 0.05029801/0.150894 m, base helix angle 0.4891167 rad, face width "
 OWN = "z 23/57, base radii 0.04284645/0.1061847 m, base helix angle 0.4891167 rad, face width 0.045"
+OTHER_DISTANCE = "other_distance.toml"
 TABLE, RUN = "gear_mesh.stiffness_table", {"t_end": 3e-3, "fmu": "in-process"}
 
 
@@ -54,7 +55,7 @@ def files(tmp_path_factory):
     """Files by name."""
     folder = tmp_path_factory.mktemp("files")
     own = write_pair(folder / "own.toml")
-    write_pair(folder / "other_distance.toml", "nearly spur")
+    write_pair(folder / OTHER_DISTANCE, "nearly spur")
     text = own.read_text(encoding="utf-8")
     single = text.replace("[gear_pair]", "[gear_pair]\nhalves = 1")
     (folder / "single.toml").write_text(single, encoding="utf-8")
@@ -137,7 +138,7 @@ NOTED = {
         "bench_controller has a gear ratio of 2.5, gearbox.gear_mesh 27/81 teeth, which is 3",
     ),
     "housing of another centre distance": (
-        lambda f: {"gear": f / "other_distance.toml"},
+        lambda f: {"gear": f / OTHER_DISTANCE},
         "modal_housing has its bearing seats 218.2 mm apart, gear_mesh a centre distance of "
         "191.3 mm",
     ),
@@ -217,3 +218,12 @@ def test_noted(wrong, files, monkeypatch):
     said = said.format(f=files)
     (line,) = (note for note in result.info.notes if note.startswith(said))
     assert line in json.loads(result.to_json())["notes"]
+
+
+def test_steady_states_and_sweeps_tell_a_housing_that_does_not_fit(files):
+    """As a run does: the pair of another centre distance, whatever is computed of it; told once."""
+    said, gear, told = "modal_housing has its bearing seats 218.2 mm apart", OTHER_DISTANCE, []
+    state = hb.steady("gearbox", torque=200.0, gear=files / gear)
+    hb.sweep("gearbox", torque=[200.0], gear=files / gear, told=told.append)
+    for lines in (state.notes, told):
+        assert len([line for line in lines if line.startswith(said)]) == 1

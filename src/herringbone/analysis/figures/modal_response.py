@@ -55,7 +55,15 @@ def housing_in(modes: Path, shapes: Path) -> ModalHousing | None:
     same_folder = modes.parent == shapes.parent and (modes.parent / HEAD).is_file()
     if not same_folder or (modes.name, shapes.name) != (MODES, SHAPES):
         return None
-    folder = modes.parent
+    return housing_at(modes.parent)
+
+
+def housing_at(folder: Path) -> ModalHousing:
+    """The modal data of a folder, not read again while they are the same.
+
+    Raises:
+        ResourceError: they cannot be read.
+    """
     content = tuple((file.name, content_key(file)) for file in sorted(folder.iterdir()))
     return _housings((folder, content), lambda: read_housing(folder))
 

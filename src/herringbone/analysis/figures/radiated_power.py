@@ -39,6 +39,8 @@ SPEED_OF_SOUND = 343.2
 """[m/s] at 20 degrees Celsius."""
 REFERENCE_POWER = 1e-12
 """Of levels [W] (ISO 1683)."""
+RADIATED = "radiated_power"
+"""Column of its level [dB re 1 pW] in the table of a study."""
 LABEL = "equivalent radiated power, upper-type estimate, about +5 dB below 500 Hz"
 _HANN_BANDWIDTH = 1.5
 """Equivalent noise bandwidth of the Hann window, in bins."""

@@ -206,8 +206,8 @@ def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:
     points = Points(found.table, found.units)
     if as_json:
         largest = {
-            group: {"rms": rms, "unit": found.units[f"{group}.rms"], "at": at}
-            for group, rms, at in largest_levels(points)
+            own.group: {own.kind: own.level, "unit": found.units[own.column], "at": own.at}
+            for own in largest_levels(points)
         }
         return json.dumps(
             {

@@ -2,8 +2,9 @@
 
 A table has a row per point. Columns: parameters (`speed` [r/min], `torque` [N.m],
 `instance.variable`), `outcome`, `mesh_frequency` [Hz], and per group or output G the figures
-`G.rms`, `G.mean`, `G.peak`, `G.order_1`, `G.order_2`, ... (amplitudes of mesh orders), NaN where a
-point has none. Units stand beside it, by column.
+`G.rms`, `G.mean`, `G.peak`, `G.order_1`, `G.order_2`, ... (amplitudes of mesh orders), and
+`radiated_power` of the housing [dB], `radiated_power.PART` of several; NaN where a point has none.
+Units stand beside it, by column.
 """
 
 import re
@@ -14,6 +15,7 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
+from herringbone.analysis.figures.radiated_power import RADIATED
 from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.core import ParameterError
 from herringbone.plotting.style import scaled_unit
@@ -44,8 +46,16 @@ class Points:
         """Groups and outputs that have an rms."""
         return tuple(c.removesuffix(".rms") for c in self.table.columns if c.endswith(".rms"))
 
+    @cached_property
+    def powers(self) -> tuple[str, ...]:
+        """Columns of radiated sound power, a level in dB."""
+        names = (RADIATED, f"{RADIATED}.")
+        return tuple(c for c in self.table.columns if c == names[0] or c.startswith(names[1]))
+
     def called(self, group: str) -> str:
         """A group in words; an output by its name as it is."""
+        if group in self.powers:
+            return group.replace("_", " ", RADIATED.count("_")).replace(".", " of ", 1)
         return group if "." in group else group.replace("_", " ")
 
     @cached_property

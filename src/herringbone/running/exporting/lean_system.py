@@ -16,10 +16,11 @@ from herringbone.core.names import shown
 from herringbone.cosim.structure.system import System
 from herringbone.housing import ModalHousing, write_housing
 from herringbone.running.exporting.export import ready
+from herringbone.running.fitted import housings_of
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.commanded import operated
 from herringbone.running.operating.lean import lean_notes
-from herringbone.running.prepared import Wishes, housings_of, prepared
+from herringbone.running.prepared import Wishes, prepared
 from herringbone.scenes import Model, Scene
 
 

@@ -117,8 +117,6 @@ def _exported(
                 f"its housing, but not {held[0]}; add --outside, or hold modes alone"
             )
         composite = make_hosted(structure, wanted)
-        for note in composite.component.hosting.notes if composite.component.hosting else ():
-            _log.warning(note)
     else:
         composite = make_composite(structure, tuple(outside), held)
     if composite.note:

@@ -16,12 +16,13 @@ from herringbone.cosim.structure.system import System
 from herringbone.housing import ModalHousing, read_housing
 from herringbone.housing.files.file_format import DATA
 from herringbone.result.budget import BudgetRow, Known
+from herringbone.running.fitted import housings_of
 from herringbone.running.housings.given import split_housings
 from herringbone.running.housings.rigid_ground import rigid_bearings
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.commanded import with_known_values
 from herringbone.running.operating.lean import SOURCE, certified
-from herringbone.running.prepared import Wishes, housings_of
+from herringbone.running.prepared import Wishes
 from herringbone.scenes import Model, Scene
 
 if TYPE_CHECKING:

@@ -11,9 +11,10 @@ from herringbone.components.registry import component
 from herringbone.core import Instance, ParameterError
 from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system import System
+from herringbone.running.fitted import housings_of
 from herringbone.running.housings.given import split_housings
 from herringbone.running.loading import load_scene, load_system, with_replacements
-from herringbone.running.prepared import Wishes, housings_of
+from herringbone.running.prepared import Wishes
 from herringbone.scenes import Scene
 
 Point = Mapping[str, float | str]

@@ -1,11 +1,14 @@
-"""The housing against the pair that it carries: seats, band, files."""
+"""The housing against the pair that it carries: seats, band, files.
+
+The place of seats is told before a run, see `misplaced_seats`; the rest needs its result.
+"""
 
 import math
 from collections.abc import Iterator
 
 import numpy as np
 
-from herringbone.analysis.asked import of_both_gears, parameter, resource_file
+from herringbone.analysis.asked import resource_file
 from herringbone.analysis.figures.modal_response import housing_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.core.declaring.roles import GEARS, PortKind, Quantity, Role
@@ -31,7 +34,6 @@ def of_housing(result: Result, gear: str) -> Iterator[str]:
     if housing is None:
         return
     yield from (f"{part}: {line}" for line in implausible(housing))
-    yield from _of_seats(result, gear, bearing, part, housing)
     frequency = run_mesh_frequency(result, gear=gear)
     if frequency and _HARMONICS * frequency > housing.valid_to_hz:
         inside = int(housing.valid_to_hz / frequency)
@@ -49,15 +51,6 @@ def _of_files(result: Result, part: str) -> Iterator[str]:
             f"{part} has its modes of {files[0]} and its shapes of {files[1]}: of two housings; "
             "--housing takes the folder of one"
         )
-
-
-def _of_seats(
-    result: Result, gear: str, bearing: str, part: str, housing: ModalHousing
-) -> Iterator[str]:
-    """Lines on the place of the wheel's seats, from those of the pinion."""
-    radii = of_both_gears(result, gear, Quantity.BASE_RADIUS)
-    angle = parameter(result, bearing, Quantity.WORKING_PRESSURE_ANGLE)
-    yield from seats_elsewhere((part, gear, bearing), housing, radii, angle)
 
 
 def seats_elsewhere(
