@@ -1,16 +1,10 @@
-"""Classical Runge-Kutta whose steps follow a tolerance.
-
-The derivative at the end of a step is that at the start of the next one, so that an embedded
-formula of order 3 costs nothing: with the stages k1 ... k4 and k5 = f(x(t + h)), the weights
-(1/6, 1/3, 1/3, 1/15, 1/10) fulfil its conditions (E. Hairer, S. P. Norsett, G. Wanner, Solving
-Ordinary Differential Equations I, 1993, section II.4); the estimate is h (k4 - k5) / 10.
+"""Communication steps that follow a tolerance: leaps, and classical Runge-Kutta beside them.
 
 No inner step is longer than the longest one that the caller keeps in the block: beyond the
 stability limit, 2.8 over the largest eigenvalue (Hairer and Wanner, Solving Ordinary Differential
 Equations II, 1996, section IV.2), an error is seen only when it has grown.
 """
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -19,18 +13,14 @@ from herringbone.core.declaring.declaration import Declaration
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.signals import STRIDE, all_finite, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG, Out, Rhs, input_kernels
+from herringbone.kernels.stepping.explicit import NEARER, explicit_stepper
 from herringbone.kernels.stepping.leaping import ANEW, AT_ONCE, LATER, SAME, Leaps, no_leaps
-from herringbone.kernels.stepping.local_error import Slots, error_measure, factor
+from herringbone.kernels.stepping.local_error import Slots
 
-TOO_SMALL = 3
-"""Status of a step in which the tolerance asked for inner steps below SMALLEST."""
-SMALLEST, FIRST, LARGEST = 1e-10, 2.5e-6, 1e-4
-"""Inner steps [s]: the smallest, the first, the largest."""
+FIRST, LARGEST = 2.5e-6, 1e-4
+"""Inner steps [s]: the first, the largest."""
 LONGEST_STEP = 10.0
 """Longest communication step [s] of one call: about a million inner steps."""
-_BENT = 6.0
-"""Of the longest step, and the root of the tolerance: steps in which a law bends, unseen by the
-estimate; what a step errs there grows with the square of its length."""
 _SHARE = 0.1
 """Of the tolerance that a step beside leaps may take.
 
@@ -38,108 +28,11 @@ Errors add up until vibrations have decayed, and only those at knots of tables a
 estimated: 0.23 of it in the mean, by where in a step the knot lies, of either sign. So n of them
 sum up to 0.23 times the root of n: to 7 for a thousand, which a pair that rattles on rigid ground
 meets in the 6 ms of its decay at a tolerance of 1e-8."""
-_NEARER = 0.25
-"""Of a step in which a law bends, that is longer: the next one, from the same start."""
 
 
 def adaptive_work(state_count: int, input_count: int) -> int:
     """Length of the work space that the stepper needs."""
     return Slots.of(state_count).known + 1 + (STRIDE + 1) * input_count
-
-
-def _runge_kutta(
-    rhs: Rhs, declaration: Declaration, slots: Slots, set_inputs: Callable
-) -> Callable:
-    """Compile runge_kutta(b, w, ts, hs, degree, c, dc), between c and c + dc of the macro step."""
-    n, x0, slope, first, last = declaration.state_count, *slots[:4]
-
-    @inner(declaration.name)
-    def runge_kutta(
-        b: np.ndarray, w: np.ndarray, ts: float, hs: float, degree: int, c: float, dc: float
-    ) -> None:
-        """One inner step, with the derivatives at its start given and those at its end found."""
-        dx = w[:n]
-        for i in range(n):
-            w[x0 + i] = b[i]
-            w[slope + i] = w[first + i]
-            b[i] = w[x0 + i] + 0.5 * hs * w[first + i]
-        set_inputs(b, w, degree, c + 0.5 * dc)
-        rhs(b, ts + 0.5 * hs, dx)
-        for i in range(n):
-            w[slope + i] += 2.0 * dx[i]
-            b[i] = w[x0 + i] + 0.5 * hs * dx[i]
-        rhs(b, ts + 0.5 * hs, dx)
-        for i in range(n):
-            w[slope + i] += 2.0 * dx[i]
-            b[i] = w[x0 + i] + hs * dx[i]
-        set_inputs(b, w, degree, c + dc)
-        rhs(b, ts + hs, dx)
-        for i in range(n):
-            w[last + i] = dx[i]
-            b[i] = w[x0 + i] + hs / 6.0 * (w[slope + i] + dx[i])
-        rhs(b, ts + hs, dx)
-
-    return runge_kutta
-
-
-def _explicit_stepper(
-    rhs: Rhs,
-    declaration: Declaration,
-    following: int,
-    longest_step: Callable,
-    set_inputs: Callable,
-    bent: Callable,
-    share: float,
-) -> Callable:
-    """Compile explicit(b, w, t, h, begin, end, tolerance, degree, most) -> int.
-
-    `following` is the place of the length of the next inner step [s].
-    """
-    n, slots = declaration.state_count, Slots.of(declaration.state_count)
-    x0, known = slots.x0, slots.known
-    error_of, go_on = error_measure(declaration, slots)
-    runge_kutta = _runge_kutta(rhs, declaration, slots, set_inputs)
-
-    @inner(declaration.name)
-    def explicit(
-        b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
-        tolerance: float, degree: int, most: float,
-    ) -> int:  # fmt: skip
-        """Integrate from t + begin to t + end, inside the macro step, in steps up to `most` [s]."""
-        done, row, follows = begin, 0, tolerance < np.inf
-        if w[known] == 0.0:
-            set_inputs(b, w, degree, begin / h)
-            rhs(b, t + begin, w[:n])
-            go_on(w, 0.0, False)
-            w[known] = 1.0
-        if follows:
-            bent(b, w, t + begin, row)
-        while done < end:
-            left = end - done
-            count = max(1.0, math.ceil(left / min(b[following], most) - 1e-9))
-            hs = left / count
-            runge_kutta(b, w, t + done, hs, degree, done / h, hs / h)
-            error = error_of(b, w, hs) / (share * tolerance) if follows else 0.0
-            ahead = hs * factor(error)
-            if error <= 1.0:
-                row = 1 - row
-                bends = follows and bent(b, w, t + done + hs, row)
-                if bends and hs > _BENT * math.sqrt(tolerance) * longest_step(b, w):
-                    row, error, ahead = 1 - row, np.inf, _NEARER * hs
-            if error <= 1.0:
-                done = end if count == 1.0 else done + hs
-                go_on(w, hs, follows)
-                if count > 1.0 or ahead > b[following]:
-                    b[following] = min(ahead, longest_step(b, w))
-            else:
-                for i in range(n):
-                    b[i] = w[x0 + i]
-                b[following] = ahead
-                if ahead < SMALLEST:
-                    return TOO_SMALL
-        return 0
-
-    return explicit
 
 
 def _interval_stepper(
@@ -148,7 +41,7 @@ def _interval_stepper(
     """Compile interval(b, w, t, h, begin, end, tolerance, degree, can_leap) -> int."""
     known = Slots.of(declaration.state_count).known
     leap, forget = leaps.leap, leaps.forget
-    room, closer = shortest * (1.0 - SAME), _NEARER * shortest
+    room, closer = shortest * (1.0 - SAME), NEARER * shortest
 
     @inner(declaration.name)
     def interval(
@@ -200,15 +93,15 @@ def adaptive_stepper(
     Returns:
         step(b, w, t, h, tolerance, degree) -> int: block, work space (`adaptive_work` long), start
         and length of the macro step [s] (h >= 0), tolerance, interface degree; 0, NOT_FINITE,
-        TOO_LONG or TOO_SMALL. With a tolerance of infinity all inner steps are as long as the
-        longest one, which `next_step` has to be then, but for what makes them equal.
+        TOO_LONG or, of `explicit`, TOO_SMALL. With a tolerance of infinity all inner steps are as
+        long as the longest one, which `next_step` has to be then, but for what makes them equal.
     """
     n, known = declaration.state_count, Slots.of(declaration.state_count).known
     first_output, outputs = declaration.first_output, len(declaration.node_outputs)
     expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, known + 1)
     following = declaration.index[next_step]
     leaps = core(set_inputs) if core else no_leaps(out, declaration.name)
-    explicit = _explicit_stepper(
+    explicit = explicit_stepper(
         rhs, declaration, following, longest_step, set_inputs, leaps.bent, _SHARE if core else 1.0
     )
     interval = _interval_stepper(declaration, explicit, leaps, shortest)

@@ -11,7 +11,7 @@ compared with those of the step before: of a jump J at a share c of the step the
 from c = 1/2 on, and Simpson's rule, which Runge-Kutta is then, errs (1 - c)^2 (1 - 2 c) J h^3 / 12,
 at most J h^3 / 324 (c = 2/3). By that ratio, 1/72, they count; earlier in the step they show more,
 later at least a third of the error. Of smooth rates it is 1.7 times the embedded estimate, both of
-third order.
+third order. A step that has none before counts by the whole of them, see `explicit`.
 """
 
 import math
@@ -40,6 +40,9 @@ class Slots(NamedTuple):
         slope: sum of the rates.
         first, last: rates at its start and end.
         size_of, error_of_kind: by kind of states.
+        bend: second differences of the rates over the last step.
+        start: states where steps begin that have none before.
+        length: of the last step; 0 if there is none.
         known: not 0 where the rates at the start are.
     """
 
@@ -50,13 +53,14 @@ class Slots(NamedTuple):
     size_of: int
     error_of_kind: int
     bend: int
+    start: int
     length: int
     known: int
 
     @classmethod
     def of(cls, n: int) -> Self:
         """Of a body with n states."""
-        return cls._make([*(k * n for k in range(1, 9)), 8 * n + 1])
+        return cls._make([*(k * n for k in range(1, 10)), 9 * n + 1])
 
 
 @kernel
@@ -83,10 +87,11 @@ def _kind(v: Variable) -> tuple[str, float, bool]:
 
 
 def error_measure(declaration: Declaration, slots: Slots) -> tuple[Callable, Callable]:
-    """Compile error_of(b, w, hs) -> float and go_on(w, hs, follows), of a step of that length [s].
+    """Compile error_of(b, w, hs, jumps) -> float and go_on(w, hs, follows), of a step of hs [s].
 
-    The error is by the states' sizes. `go_on` makes the rates at the end of a step those at the
-    start of the next one, and keeps their second differences for its error, if that follows.
+    The error is by the states' sizes, with what jumps of curvature do, or without. `go_on` makes
+    the rates at the end of a step those at the start of the next one, and keeps their second
+    differences for its error, if that follows.
     """
     n, visible = declaration.state_count, len(declaration.states)
     kinds = list(dict.fromkeys(_kind(v) for v in declaration.states))
@@ -98,7 +103,8 @@ def error_measure(declaration: Declaration, slots: Slots) -> tuple[Callable, Cal
         at_vector += vector.capacity
         ends.append(at_vector)
     vector_count, vectors = len(ends), np.array(ends, dtype=np.int64)
-    slope, first, last, size_of, error_of_kind, bend, length = slots[1:8]
+    slope, first, last, size_of, error_of_kind, bend = slots[1:7]
+    length = slots.length
 
     @inner(declaration.name)
     def bend_of(w: np.ndarray, i: int) -> float:
@@ -106,16 +112,16 @@ def error_measure(declaration: Declaration, slots: Slots) -> tuple[Callable, Cal
         return w[i] - 0.5 * w[slope + i] + 1.5 * w[first + i]
 
     @inner(declaration.name)
-    def missed(w: np.ndarray, i: int, share: float) -> float:
+    def missed(w: np.ndarray, i: int, share: float, jumps: bool) -> float:
         """What a rate was wrong by, over the weight of the embedded formula."""
         found = abs(w[last + i] - w[i])
-        if share > 0.0:
+        if jumps:
             jump = 4.0 * (bend_of(w, i) - share * w[bend + i])
             found = worse(found, _OF_JUMP / _WEIGHT * abs(jump))
         return found
 
     @inner(declaration.name)
-    def error_of(b: np.ndarray, w: np.ndarray, hs: float) -> float:
+    def error_of(b: np.ndarray, w: np.ndarray, hs: float, jumps: bool) -> float:
         worst, share = 0.0, 0.0
         if w[length] > 0.0:
             share = (hs / w[length]) ** 2
@@ -124,7 +130,7 @@ def error_measure(declaration: Declaration, slots: Slots) -> tuple[Callable, Cal
         for i in range(visible):
             of = kind_of[i]
             w[size_of + of] = max(w[size_of + of], grows[i] * abs(b[i]))
-            w[error_of_kind + of] = worse(w[error_of_kind + of], missed(w, i, share))
+            w[error_of_kind + of] = worse(w[error_of_kind + of], missed(w, i, share, jumps))
         for kind in range(kind_count):
             worst = worse(worst, w[error_of_kind + kind] / w[size_of + kind])
         begin = visible
@@ -132,7 +138,7 @@ def error_measure(declaration: Declaration, slots: Slots) -> tuple[Callable, Cal
             size, error = _FLOOR, 0.0
             for i in range(begin, vectors[v]):
                 size = max(size, abs(b[i]))
-                error = worse(error, missed(w, i, share))
+                error = worse(error, missed(w, i, share, jumps))
             begin = vectors[v]
             worst = worse(worst, error / size)
         return _WEIGHT * hs * worst

@@ -33,10 +33,10 @@ from herringbone.kernels.stepping.adaptive import (
     FIRST,
     LARGEST,
     LONGEST_STEP,
-    TOO_SMALL,
     adaptive_stepper,
     adaptive_work,
 )
+from herringbone.kernels.stepping.explicit import TOO_SMALL
 
 TOLERANCE, NEXT_STEP = "tolerance", "next_inner_step"
 _USUAL = 1e-3
