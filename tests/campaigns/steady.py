@@ -26,7 +26,8 @@ from fuzz.campaign import last_commit
 import herringbone as hb
 from campaigns.plans import tell
 from herringbone.analysis.steady.harmonic_balance.fourier import in_time
-from herringbone.analysis.steady.marching.marched import Held, start_of
+from herringbone.analysis.steady.marching.held import Held
+from herringbone.analysis.steady.marching.marched import start_of
 from herringbone.analysis.steady.searching.guess import beginnings, standing
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.fused.core import Steps

@@ -19,7 +19,8 @@ from collections import Counter
 from contextlib import contextmanager
 from pathlib import Path
 
-from fuzz.kinds import Kind, all_kinds, refused
+from fuzz.kinds import all_kinds
+from fuzz.kinds.kind import Kind, refused
 from fuzz.mutate import mutated
 
 LONGEST = 10

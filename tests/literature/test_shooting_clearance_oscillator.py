@@ -20,7 +20,8 @@ from support.clearance import contact_lost, fold
 from support.gearing.gear_mesh import constant_table
 
 import herringbone as hb
-from herringbone.analysis.steady.marching.marched import Held, start_of
+from herringbone.analysis.steady.marching.held import Held
+from herringbone.analysis.steady.marching.marched import start_of
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.twin.condensed.solution import Solution

@@ -82,6 +82,7 @@ ONLY_IN: dict[str, set[str]] = {
         "fmi/native/objects.py",
         "fmi/native/wide.py",
         "kernels/compiling/constants.py",
+        "kernels/compiling/dispatching.py",
         "kernels/compiling/elements.py",
         "kernels/compiling/kept_pieces.py",
         "kernels/compiling/linking.py",

@@ -1,6 +1,7 @@
-"""Modules that docstrings and comments name are there: files move, what speaks of them stays."""
+"""What docstrings and pages name is there: modules and files move, what speaks of them stays."""
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -8,6 +9,13 @@ from herringbone.core.places.paths import PACKAGE
 
 FILES = sorted(PACKAGE.rglob("*.py"))
 ROOMS = sorted(place.name for place in PACKAGE.iterdir() if (place / "__init__.py").is_file())
+ROOT = Path(__file__).parents[2]
+PAGES = ("CONTRIBUTING.md", "docs/architecture.md", "docs/glossary.md", "tests/campaigns/README.md")
+PLACES = (ROOT, PACKAGE, ROOT / "tests")
+"""Where their paths begin."""
+NOT_HERE = {"..", ".venv", "build"}
+"""Outside, or made."""
+PATH = re.compile(r"(?<![\w/.])(?:[\w.-]+/)+[\w.-]+")
 NAMED = re.compile(rf"`(?:herringbone\.)?((?:{'|'.join(ROOMS)})(?:\.\w+)+)`")
 
 
@@ -34,6 +42,22 @@ def test_named_modules_exist():
     ]
     assert len(named) > 50
     assert [(file, name) for file, name in named if not is_there(name)] == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_named_files_exist(page):
+    code = re.findall(r"```[^`]*```|`[^`\n]+`", (ROOT / page).read_text(encoding="utf-8"))
+    named = {name.rstrip(".") for piece in code for name in PATH.findall(piece)}
+    assert [name for name in named if is_ours(name) and not exists(name)] == []
+
+
+def is_ours(path):
+    first = path.split("/")[0]
+    return first not in NOT_HERE and exists(first)
+
+
+def exists(path):
+    return any((place / path).exists() for place in PLACES)
 
 
 @pytest.mark.parametrize("name", ["core.roles", "running.settled", "core.part_path.flat_name"])

@@ -1,9 +1,7 @@
 """Steady rotation under load: the start at which nothing rings.
 
 Unknown are all states. Wanted: every derivative vanishes but those of absolute angles, and every
-output that is declared to vanish (the rates of shaft twists) does. Angles are free up to a common
-rotation and a system without controller keeps its start speed, so that the system of equations has
-a null space: Gauss-Newton with the smallest step in scaled unknowns.
+output that is declared to vanish (the rates of shaft twists) does.
 
 Beside parts whose equations are not known, see `analysis.answered`, what they answer follows the
 states, and what does not balance may speed up the whole drivetrain evenly.
@@ -18,14 +16,8 @@ import numpy as np
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.answered import NO_ANSWERS, Answered, Answers
 from herringbone.analysis.balanced_angle import NoBalanceError, balanced_angles
-from herringbone.analysis.rigid_rotation import (
-    names_of_states,
-    rigid_rotation,
-    steady_rows,
-    turning,
-    units_of_states,
-)
-from herringbone.analysis.slopes import slopes
+from herringbone.analysis.rigid_rotation import rigid_rotation, turning
+from herringbone.analysis.steady_search import scales, steady_rotation
 from herringbone.analysis.swung_out import swung_out
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
@@ -33,17 +25,6 @@ from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
-_ITERATIONS, _PATIENCE = 40, 12
-"""At most, and without getting closer: a search that is caught stays so."""
-_CLOSER = 0.9
-_CONVERGED, _NEARLY = 1e-11, 1e-8
-"""Of the first guess; the latter beside parts that answer, where guesses are good already."""
-SCALE = {
-    "m": 1e-6, "m/s": 1e-3, "rad": 1e-3, "rad/s": 1.0, "N.m": 100.0,
-    "kg^1/2.m": 1e-6, "kg^1/2.m/s": 1e-3,
-}  # fmt: skip
-"""Sizes of states, by unit; others 1."""
-_RANK = 1e-12
 _KEPT = 1e-3
 """Of the speed of a gearbox between given torques: its search changes no more of it."""
 
@@ -95,11 +76,11 @@ def answered_equilibrium(twin: Twin, answers: Answers) -> AnsweredEquilibrium:
         answered = Answered(twin, answers, guess, speeds_up=held is None)
         stay = [state for state in (held, *answered.kept) if state is not None]
         try:
-            found, _ = _solved(twin.system, twin, stay, guess, answered)
+            found, _ = steady_rotation(twin.system, twin, stay, guess, answered)
         except EquilibriumError:
-            if (near := swung_out(twin, answered, guess, _scales(twin))) is None:
+            if (near := swung_out(twin, answered, guess, scales(twin))) is None:
                 raise
-            found, _ = _solved(twin.system, twin, stay, near, answered)
+            found, _ = steady_rotation(twin.system, twin, stay, near, answered)
         acceleration, x = answered.set(found), found[:-1]
         return AnsweredEquilibrium(_start_values(twin, x), x, acceleration, answered.rotation)
 
@@ -143,7 +124,7 @@ def equilibrium(system: System, angles: bool = True) -> Equilibrium:
                 if (x := next(beginnings, None)) is None:
                     break
                 stay = [] if held is None else [held]
-                found, residual = _solved(system, twin, stay, x)
+                found, residual = steady_rotation(system, twin, stay, x)
             except EquilibriumError as error:
                 failures.append(error)
                 continue
@@ -162,7 +143,7 @@ def _beginnings(
     yield guess
     yield from turning(twin, guess)
     if held is None and angles:
-        yield from balanced_angles(twin, guess, _scales(twin))
+        yield from balanced_angles(twin, guess, scales(twin))
 
 
 def _kept_speed(twin: Twin, held: int | None, guess: np.ndarray, found: np.ndarray) -> bool:
@@ -200,59 +181,6 @@ def _holds_speed(system: System) -> bool:
     return not ends.isdisjoint(found)
 
 
-def _solved(
-    system: System,
-    twin: Twin,
-    stay: list[int],
-    x: np.ndarray,
-    answered: Answered | None = None,
-) -> tuple[np.ndarray, float]:
-    """Steady rotation from a guess, with some states as they are: states (n,) and residual.
-
-    Beside parts that answer, the acceleration is the last unknown.
-    """
-    rotating, zero = steady_rows(twin)
-    count, scale = x.size, _scales(twin)
-    if x.size == 0:
-        return x, 0.0
-    keep = np.setdiff1d(np.arange(count), rotating)
-    if answered is not None:
-        x, scale = np.append(x, 0.0), np.append(scale, answered.size)
-    free = np.ones(x.size)
-    free[stay] = 0.0
-
-    def residual(x: np.ndarray) -> np.ndarray:
-        states = x[:count]
-        steady = 0.0 if answered is None else answered.set(x) * answered.rotation
-        dx = twin.rhs(0.0, states) - steady
-        outputs = twin.observe(np.zeros(1), states[:, None], zero)[0] if zero else np.empty(0)
-        return np.concatenate([dx[keep], outputs])
-
-    r = residual(x)
-    first, best, since = None, np.inf, 0
-    converged = _CONVERGED if answered is None else _NEARLY
-    for iteration in range(_ITERATIONS):
-        jacobian = slopes(residual, x, r, scale, range(x.size)) * free
-        rows = np.abs(jacobian).max(axis=1)
-        rows[rows == 0.0] = 1.0
-        scaled = np.abs(r / rows).max()
-        first = first or max(scaled, 1.0)
-        if scaled < converged * first:
-            return x, float(scaled / first)
-        if scaled < _CLOSER * best:
-            best, since = scaled, iteration
-        if iteration - since >= _PATIENCE:
-            break
-        step = np.linalg.lstsq(jacobian / rows[:, None], -r / rows, rcond=_RANK)[0] * scale * free
-        x, r = _line_search(residual, x, r, step, rows)
-    names = [f"the rate of {name}" for name in names_of_states(twin)]
-    worst = [*(names[k] for k in keep), *zero][int(np.argmax(np.abs(r / rows)))]
-    raise EquilibriumError(
-        f"no steady rotation of '{system.name}' was found in {iteration + 1} iterations: {worst} "
-        "does not vanish; look for a load there that nothing balances, or start with --start rest"
-    )
-
-
 def _guess(twin: Twin) -> np.ndarray:
     """Start values, moved to where the components want the search to begin."""
     x = twin.state
@@ -263,22 +191,6 @@ def _guess(twin: Twin) -> np.ndarray:
         instance.component.guess(block)
         x[states[p] : states[p + 1]] = block[: states[p + 1] - states[p]]
     return x
-
-
-def _scales(twin: Twin) -> np.ndarray:
-    """Sizes of the states."""
-    return np.array([SCALE.get(unit, 1.0) for unit in units_of_states(twin)])
-
-
-def _line_search(residual, x: np.ndarray, r: np.ndarray, step: np.ndarray, rows: np.ndarray):  # noqa: ANN001, ANN202
-    """Halve the step until the scaled residual falls; the last trial is taken in any case."""
-    before = np.linalg.norm(r / rows)
-    for k in range(12):
-        trial = x + step * 0.5**k
-        new = residual(trial)
-        if np.linalg.norm(new / rows) < before:
-            break
-    return trial, new
 
 
 def _start_values(twin: Twin, x: np.ndarray) -> dict[str, float]:

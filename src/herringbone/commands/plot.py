@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
 def _run(options: argparse.Namespace, output: Path) -> list[Path]:
     from herringbone.analysis.figures.runup import speed_changes  # noqa: PLC0415
     from herringbone.plotting import plot_columns, write_pictures  # noqa: PLC0415 (lazy)
-    from herringbone.plotting.runup import run_up  # noqa: PLC0415
+    from herringbone.plotting.runs.runup import run_up  # noqa: PLC0415
     from herringbone.result.folder.load import load  # noqa: PLC0415
 
     result = load(options.folder)

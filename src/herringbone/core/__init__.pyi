@@ -10,9 +10,9 @@ from .declaring.hosting import Remark as Remark
 from .declaring.hosting import RunsOn as RunsOn
 from .declaring.laws import Laws as Laws
 from .declaring.laws import common_period as common_period
-from .declaring.variable import Column as Column
+from .declaring.text import Column as Column
+from .declaring.text import Text as Text
 from .declaring.variable import StateVector as StateVector
-from .declaring.variable import Text as Text
 from .declaring.variable import Variable as Variable
 from .declaring.variable import choice as choice
 from .declaring.variable import input_ as input_

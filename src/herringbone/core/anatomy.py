@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 from herringbone.core.declaring.declaration import Declaration
 from herringbone.core.declaring.roles import Port, PortKind, Quantity, Role
-from herringbone.core.declaring.variable import Text, Variable
+from herringbone.core.declaring.text import Text
+from herringbone.core.declaring.variable import Variable
 
 
 class Answer(NamedTuple):

@@ -7,7 +7,7 @@ import numpy as np
 
 from herringbone.core import FmuError, Outcome, OutcomeKind
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
-from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.checkpoint.checkpoints import Checkpoints
 from herringbone.cosim.ending import REFUSED, Ending
 from herringbone.cosim.energy.watch import EnergyWatch

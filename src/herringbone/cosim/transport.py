@@ -4,7 +4,7 @@ import numpy as np
 
 from herringbone.core import FmuError
 from herringbone.core.part import Part
-from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.layouts.derivatives import Derivatives, input_fit
 from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.loops.common import LAST_GOOD

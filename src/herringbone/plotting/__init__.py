@@ -5,16 +5,10 @@ Every function returns a `matplotlib.figure.Figure`, which a notebook shows: sav
 """
 
 from herringbone.plotting.columns import plot_columns
-from herringbone.plotting.overview import overview
-from herringbone.plotting.pictures import (
-    PICTURES,
-    bearing_forces,
-    radiated_power,
-    seat_velocities,
-    spectra,
-    torques,
-    write_pictures,
-)
+from herringbone.plotting.runs.over_time import bearing_forces, seat_velocities, torques
+from herringbone.plotting.runs.overview import overview
+from herringbone.plotting.runs.pictures import PICTURES, write_pictures
+from herringbone.plotting.runs.spectra import radiated_power, spectra
 
 __all__ = [
     "PICTURES",

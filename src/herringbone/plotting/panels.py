@@ -18,6 +18,8 @@ SHOWN_PERIODS = 6
 """Mesh periods that a close-up shows."""
 HIGHEST = 3000.0
 """End of the spectra if nothing else is asked for [Hz]."""
+MM = 1e3
+"""Of SI lengths and velocities, as they are shown."""
 DECADES = 3.5
 """Range of amplitudes in a spectrum."""
 _CLOSE_UP_SHARE, _CLOSE_UP_ROWS = 0.05, 100

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 
-from herringbone.analysis.equilibrium import SCALE
+from herringbone.analysis.steady_search import SCALE
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import EquilibriumError
 from herringbone.core.activity import activity

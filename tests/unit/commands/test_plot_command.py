@@ -31,7 +31,7 @@ def test_pictures_of_columns(folder, tmp_path, capsys):
 
 
 def test_all_pictures_of_a_run(folder, monkeypatch):
-    monkeypatch.setattr("herringbone.plotting.pictures.PICTURES", {})  # the slow ones
+    monkeypatch.setattr("herringbone.plotting.runs.pictures.PICTURES", {})  # the slow ones
     assert main(["plot", str(folder), "--highest", "4000"]) == 0
     assert {"overview.png", "spectra.png", "run_up.png"} <= {f.name for f in folder.iterdir()}
 

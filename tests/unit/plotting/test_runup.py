@@ -8,8 +8,8 @@ from support.result import make_result
 
 from herringbone.analysis.figures.runup import tracked
 from herringbone.core import ParameterError
-from herringbone.plotting.pictures import write_pictures
-from herringbone.plotting.runup import run_up
+from herringbone.plotting.runs.pictures import write_pictures
+from herringbone.plotting.runs.runup import run_up
 
 FORCE = "gearbox.bearing_supports.shaft.pinion_left.f_y"
 SPEED = "gearbox.gear_mesh.pinion.w"

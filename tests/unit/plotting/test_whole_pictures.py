@@ -8,6 +8,7 @@ import pytest
 
 from herringbone.core import HerringboneError
 from herringbone.core.caching.files import write_file
+from herringbone.core.places.paths import PACKAGE
 from herringbone.plotting.style import new_figure
 
 
@@ -34,6 +35,12 @@ def test_a_picture_is_whole_or_as_it_was(tmp_path):
     assert file.read_bytes() == b"before"
     figure.savefig(file)
     assert file.read_bytes().startswith(b"\x89PNG")
+
+
+def test_all_pictures_are_saved_so():
+    """matplotlib's canvases write into the file itself."""
+    writers = {file.name for file in PACKAGE.rglob("*.py") if "print_png" in file.read_text()}
+    assert not writers
 
 
 def test_a_full_cache_is_named(tmp_path):

@@ -6,7 +6,8 @@ from numpy.polynomial import Polynomial
 from scipy.linalg import expm
 from support.housing import read_modes
 
-from herringbone.components.modal_housing import MODAL_HOUSING, MODES, STEPS
+from herringbone.components.modal_housing import MODAL_HOUSING
+from herringbone.components.modal_housing.layout import MODES, STEPS
 from herringbone.components.ports import HALVES
 from herringbone.core import Instance
 from herringbone.core.places.paths import component_folder

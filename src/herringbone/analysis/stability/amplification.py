@@ -29,7 +29,7 @@ from herringbone.analysis.stability.surrogates.stand_in import StandIn
 from herringbone.core import HerringboneError, Instance
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import Algorithm
-from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, record_names
 from herringbone.cosim.layouts.starts import starts_of
 from herringbone.cosim.loops.common import DONE, get_all

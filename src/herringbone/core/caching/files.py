@@ -51,7 +51,7 @@ def _sweep(folder: Path) -> None:
 def store(file: Path, content: bytes) -> None:
     """Put a file into the cache."""
     write_file(file, content)
-    write_file(_stamp(file), hashlib.sha256(content).hexdigest().encode())
+    write_file(_stamp(file), _digest(content).encode())
 
 
 def read_stored(file: Path) -> bytes | None:
@@ -76,7 +76,7 @@ def is_sound(file: Path, content: bytes, digest: str) -> bool:
     if not is_trusted(file):
         _LOG.warning("%s is of another user, or others can write it; it is made anew", file)
         return False
-    if hashlib.sha256(content).hexdigest() == digest:
+    if _digest(content) == digest:
         return True
     _LOG.warning("%s is damaged; it is made anew", file)
     return False
@@ -115,26 +115,23 @@ def stored_files(folder: Path, pattern: str) -> list[Path]:
 
 def keep(file: Path, found: object) -> None:
     """Keep what can be found again, as JSON behind its digest; not being able to does no harm."""
-    text = json.dumps(found)
+    text = json.dumps(found).encode()
     with contextlib.suppress(OSError):
-        write_file(file, f"{_digest(text)}\n{text}".encode())
+        write_file(file, f"{_digest(text)}\n".encode() + text)
 
 
 def kept(file: Path) -> Any:  # noqa: ANN401 (what was kept)
     """What was kept in a file; None if there is nothing, or it is damaged or of another user.
 
-    A line is logged if it is damaged.
+    A line is logged if it is damaged, or of another user.
     """
     try:
-        digest, _, text = file.read_bytes().decode(errors="replace").partition("\n")
-        trusted = is_trusted(file)
+        digest, _, text = file.read_bytes().partition(b"\n")
+        sound = is_sound(file, text, digest.decode(errors="replace"))
     except OSError:
         return None
-    if digest != _digest(text):
-        _LOG.warning("%s is damaged; what it held is found again", file)
-        return None
-    return json.loads(text) if trusted else None
+    return json.loads(text) if sound else None
 
 
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

@@ -10,15 +10,9 @@ from collections.abc import Iterable
 from functools import cached_property
 
 from herringbone.core.declaring.roles import Port, Quantity, Role
+from herringbone.core.declaring.text import Text
 from herringbone.core.declaring.units import base_exponents
-from herringbone.core.declaring.variable import (
-    NODES,
-    Causality,
-    StateVector,
-    Text,
-    Variable,
-    parameter,
-)
+from herringbone.core.declaring.variable import NODES, Causality, StateVector, Variable, parameter
 from herringbone.core.errors import ParameterError, StructureError
 from herringbone.core.names import check_name, meant
 

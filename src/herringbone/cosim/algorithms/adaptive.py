@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from herringbone.cosim.algorithms.adaptive_figures import error_estimate, step_statistics
-from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.algorithms.iterated import SMALLEST, PreparedNodes
 from herringbone.cosim.algorithms.jacobian import PREDICTION, CouplingError, StepRefusedError
+from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.algorithms.rung_jacobians import RungJacobians
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.adaptive import (

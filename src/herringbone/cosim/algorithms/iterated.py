@@ -7,7 +7,6 @@ import numpy as np
 
 from herringbone.core.part import of_parts
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, solved_growth
-from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.algorithms.jacobian import (
     PREDICTION,
     CouplingError,
@@ -15,6 +14,7 @@ from herringbone.cosim.algorithms.jacobian import (
     correction_matrix,
 )
 from herringbone.cosim.algorithms.node_signals import fmi_derivatives, node_degrees
+from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.layout import Chunk, build_layout, connected_outputs
 from herringbone.cosim.layouts.nodes import (

@@ -22,7 +22,8 @@ import numpy as np
 from herringbone.core import ParameterError
 from herringbone.core.part import has_nodes
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
-from herringbone.cosim.algorithms.base import Algorithm, PreparedRun
+from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.algorithms.staged import prepare_stages, refuse_mixed
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.layout import (

@@ -8,7 +8,7 @@ import numpy as np
 from herringbone.core import ParameterError
 from herringbone.core.part import has_nodes
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
-from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.layouts.derivatives import lay_out_derivatives
 from herringbone.cosim.layouts.layout import Chunk, Layout, build_layout
 from herringbone.cosim.layouts.slow import slow_degrees

@@ -24,10 +24,7 @@ gave there, if it saw the motion that the step ends with. If it saw another one 
 predicted or old), the difference is taken out with its stiffness and damping matrices.
 
 dE and what the dampers take, the integral of v C v, are summed over the steps of a window, or over
-samples of them. Where the coupling adds more than these dampers take, a motion may grow. It need
-not, because the bodies have dampers of their own: so it must also be seen to grow, by what the
-dampers take, which is quadratic in the motion. Work that rounding of the forces can do is left out
-of what is added: when a motion has died out, nothing else is there.
+samples of them, and judged there: see `energy.window`.
 
 Compare B. Rodriguez, A. J. Rodriguez, B. Sputh et al., Multibody Syst. Dyn. 55 (2022) 75-103, on
 energy errors at the interfaces of explicit co-simulation.
@@ -40,38 +37,21 @@ from herringbone.cosim.energy.monitor import (
     DRAG,
     DRAG_AT_END,
     ELASTIC,
-    INACCURATE_AT,
-    INACCURATE_FOR,
-    LEAST,
-    LENGTH,
     ROUNDED,
     SAMPLES,
-    SAMPLES_BEFORE,
-    SLICES,
     SPEED,
     SPEED_AT_END,
     STEPS,
     TERMS,
     TIME,
     TOTAL,
-    UNSTABLE_AT,
     EnergyMonitor,
 )
-from herringbone.kernels.compiling.jit import inlined, kernel
+from herringbone.cosim.energy.window import end_step, update_common
+from herringbone.kernels.compiling.jit import inlined
 
-UNSTABLE, EARLY, INACCURATE = 1.0, 2.0, 0.1
-"""Energy added by the coupling, in units of what the dampers take; EARLY holds for UNSTABLE while
-the first window is not full."""
-RISE = 30.0
-"""Rise of what the dampers take, while the coupling adds more, that counts as growth: the motion
-rises 5.5-fold. The start of a stable run, when its excitation sets in, makes less."""
-PATIENCE = 4
-"""Judgement begins after this part of a window, and inaccuracy must last as long."""
 _EPSILONS = 16.0 * np.finfo(np.float64).eps
 """Rounding of a force, relative to its terms: about as many operations make it from the states."""
-_NOTHING = 1e-300
-_ROUNDING = 1e-6
-"""Of the time, in slices."""
 
 
 @inlined
@@ -87,20 +67,6 @@ def _write_end(monitor: EnergyMonitor, values: np.ndarray) -> None:
         state[TERMS, i] += abs(monitor.damping[k] * values[monitor.places.velocity[j]])
         if monitor.places.position[j] >= 0:
             state[TERMS, i] += abs(monitor.stiffness[k] * values[monitor.places.position[j]])
-
-
-@inlined
-def _update_common(monitor: EnergyMonitor, steps: int) -> None:
-    """Mean common velocity of the pairs of an element, from its sum over so many steps."""
-    state, rigid = monitor.state, monitor.rigid
-    for i in range(monitor.places.force.size):
-        before = state[COMMON, i]
-        state[COMMON, i] = 0.0
-        for j in range(monitor.places.force.size):
-            state[COMMON, i] += rigid[i, j] * state[TOTAL, j] / steps
-        state[SPEED, i] += before - state[COMMON, i]
-    for i in range(monitor.places.force.size):
-        state[TOTAL, i] = 0.0
 
 
 @inlined
@@ -127,7 +93,7 @@ def begin_step(monitor: EnergyMonitor, start: np.ndarray, end: np.ndarray, toget
     if monitor.counts[SAMPLES] == 0:
         for i in range(monitor.places.force.size):
             state[TOTAL, i] = start[monitor.places.velocity[i]]
-        _update_common(monitor, 1)
+        update_common(monitor, 1)
     if monitor.counts[STEPS] == 1 or (together and monitor.stride > 1):
         _write_start(monitor, start)
     _write_end(monitor, end)
@@ -218,55 +184,3 @@ def book_step(monitor: EnergyMonitor, history: np.ndarray, h: float) -> None:
         finish_pair(monitor, i, elastic, work, heat, h)
     if sample:
         end_step(monitor, h)
-
-
-@inlined
-def end_step(monitor: EnergyMonitor, h: float) -> None:
-    """Book the length of a step; judge when a slice of time is full."""
-    counts, clock = monitor.counts, monitor.clock
-    counts[SAMPLES] += 1
-    monitor.now[monitor.places.force.size + LENGTH] += h
-    if clock[TIME] >= (counts[SLICES] + 1.0 - _ROUNDING) * monitor.slice:
-        _close_slice(monitor)
-
-
-@inlined
-def _judge(monitor: EnergyMonitor) -> None:
-    """Set the flags."""
-    counts, clock, sums = monitor.counts, monitor.clock, monitor.sums
-    count = monitor.places.force.size
-    window = monitor.slices.shape[0]
-    added = -sums[count + ROUNDED]
-    for i in range(count):
-        added += sums[i]
-    taken = max(sums[count], _NOTHING)
-    power = taken / sums[count + LENGTH]
-    bound = UNSTABLE if counts[SLICES] >= window else EARLY
-    clock[LEAST] = min(clock[LEAST], power) if added > bound * taken else np.inf
-    if np.isnan(clock[UNSTABLE_AT]) and power > RISE * clock[LEAST]:
-        clock[UNSTABLE_AT] = clock[TIME]
-        for i in range(sums.size):
-            monitor.at_flag[i] = sums[i]
-    counts[INACCURATE_FOR] = counts[INACCURATE_FOR] + 1 if added > INACCURATE * taken else 0
-    if np.isnan(clock[INACCURATE_AT]) and PATIENCE * counts[INACCURATE_FOR] > window:
-        clock[INACCURATE_AT] = clock[TIME]
-
-
-@kernel
-def _close_slice(monitor: EnergyMonitor) -> None:
-    """The present slice of time goes into the window, and the oldest one out of it."""
-    counts, slices, sums, now = monitor.counts, monitor.slices, monitor.sums, monitor.now
-    window = slices.shape[0]
-    row = counts[SLICES] % window
-    for i in range(sums.size):
-        sums[i] += now[i] - slices[row, i]
-        slices[row, i] = now[i]
-        now[i] = 0.0
-    counts[SLICES] += 1
-    if row == window - 1:  # what a large transient left in the sums by rounding is forgotten
-        for i in range(sums.size):
-            sums[i] = slices[:, i].sum()
-        _update_common(monitor, counts[SAMPLES] - counts[SAMPLES_BEFORE])
-        counts[SAMPLES_BEFORE] = counts[SAMPLES]
-    if PATIENCE * counts[SLICES] > window:
-        _judge(monitor)

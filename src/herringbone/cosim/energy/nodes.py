@@ -8,8 +8,9 @@ what makes the step unstable. Elements have seen the true motion. Both integrals
 
 import numpy as np
 
-from herringbone.cosim.energy.loop import begin_step, end_step, finish_pair
+from herringbone.cosim.energy.loop import begin_step, finish_pair
 from herringbone.cosim.energy.monitor import COMMON, DRAG_AT_END, ELASTIC, EnergyMonitor
+from herringbone.cosim.energy.window import end_step
 from herringbone.kernels.compiling.jit import inlined, kernel
 
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.core.energy_report import EnergyReport, Verdict
-from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.energy.monitor import (
     INACCURATE_AT,
     NOTHING_WATCHED,

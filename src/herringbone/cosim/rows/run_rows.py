@@ -5,7 +5,7 @@ import numpy as np
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.core.part import column
 from herringbone.core.run_table import KeptRows
-from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.divergence import first_nan, is_sudden
 from herringbone.cosim.layouts.layout import record_names
 from herringbone.cosim.loops.common import BOUND

@@ -1,17 +1,23 @@
 """The C file that describes one component to the wrapper; see component.h for every entry."""
 
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from herringbone.components.resources.loader import ResourceLoader
-from herringbone.core import Component, Declaration, Text, Variable
+from herringbone.core import Component, Text, Variable
 from herringbone.core.caching.keys import sources_key
 from herringbone.core.declaring.component import unbounded, unchanged
-from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
-from herringbone.core.declaring.roles import Quantity
-from herringbone.core.declaring.variable import NODES, Causality, Variability
-from herringbone.fmi import interface
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.fmi.description.common import identifier
-from herringbone.fmi.native.c_text import array, number, quoted, string_array
+from herringbone.fmi.native.c_text import array, quoted, string_array
+from herringbone.fmi.native.component_tables import (
+    access,
+    block_of,
+    extents,
+    rates,
+    reals,
+    unlike_nodes,
+    vectors,
+)
 from herringbone.fmi.used_states import UsedStates
 
 _ENTRY_POINTS = """\
@@ -38,7 +44,7 @@ def component_source(used: UsedStates) -> str:
         used: the component, and the states that its FMU shows.
     """
     component, declaration = used.component, used.component.declaration
-    states, block, hosting = used.scalars(), _block(used), component.hosting
+    states, block, hosting = used.scalars(), block_of(used), component.hosting
     loader = component.load if isinstance(component.load, ResourceLoader) else None
     refusals = loader.refusals if loader else ()
     parts = [
@@ -47,14 +53,14 @@ def component_source(used: UsedStates) -> str:
         "#include <stddef.h>",
         '#include "component.h"',
         _ENTRY_POINTS,
-        array("HbReal reals", _reals(declaration, block)),
-        string_array("names", (v.name if v else "" for v in _unlike_nodes(declaration, block))),
-        string_array("units", (v.unit if v else "" for v in _unlike_nodes(declaration, block))),
-        array("uint8_t access", _access(declaration, block, states)),
-        array("uint8_t extents", _extents(used)),
-        array("uint32_t rates", _rates(declaration, block)),
+        array("HbReal reals", reals(declaration, block)),
+        string_array("names", (v.name if v else "" for v in unlike_nodes(declaration, block))),
+        string_array("units", (v.unit if v else "" for v in unlike_nodes(declaration, block))),
+        array("uint8_t access", access(declaration, block, states)),
+        array("uint8_t extents", extents(used)),
+        array("uint32_t rates", rates(declaration, block)),
         array("uint32_t exchanged", states),
-        array("HbVector vectors", _vectors(used)),
+        array("HbVector vectors", vectors(used)),
         *_grammars(declaration.texts),
         array("HbRunsOn runs_on", _runs_on(component)),
         array("char *const not_settled", map(quoted, hosting.not_settled if hosting else ())),
@@ -135,20 +141,6 @@ def _entries(
     }
 
 
-def _real(variable: Variable, node: int) -> str:
-    numbers = (variable.start, variable.minimum, variable.maximum, variable.nominal)
-    method = variable.quantity is Quantity.MICRO_STEP or variable.name == INTERFACE_DEGREE
-    kinds = int(variable.whole), node, int(bool(variable.items)), int(method)
-    return f"{{{', '.join([*map(number, numbers), *map(str, kinds)])}}}"
-
-
-def _block(used: UsedStates) -> list[Variable | None]:
-    """The variables by index in the block, parameters included; None: a hidden state."""
-    declaration = used.component.declaration
-    reals = interface.every_real(declaration) | used.scalars()
-    return [reals.get(i) for i in range(declaration.first_table)]
-
-
 def _starts_as_made(component: Component) -> bool:
     """Tells if states begin anywhere but at 0, and nothing looks for them when the FMU starts."""
     return not component.hosting and any(v.start for v in component.declaration.states)
@@ -163,76 +155,6 @@ def _runs_on(component: Component) -> Iterable[str]:
 def _remarks(component: Component) -> Iterable[str]:
     for remark in component.by_tolerance.remarks if component.by_tolerance else ():
         yield f"{{{quoted(remark.format)}, {int(remark.warning)}}}"
-
-
-def _nodes(declaration: Declaration) -> dict[int, int]:
-    """Number of the node, 1 to 4, by index in the block."""
-    return {
-        declaration.index[variable.name] + node: node
-        for variable in declaration.variables
-        if variable.nodes
-        for node in range(1, NODES + 1)
-    }
-
-
-def _unlike_nodes(declaration: Declaration, block: list[Variable | None]) -> list[Variable | None]:
-    nodes = _nodes(declaration)
-    return [variable for index, variable in enumerate(block) if index not in nodes]
-
-
-def _reals(declaration: Declaration, block: list[Variable | None]) -> Iterable[str]:
-    nodes = _nodes(declaration)
-    for index, variable in enumerate(block):
-        node = nodes.get(index, 0)
-        yield _real(variable, node) if variable else "{0.0, 0.0, 0.0, 1.0, 0, 0, 0, 0}"
-
-
-def _access(
-    declaration: Declaration, block: list[Variable | None], states: Container[int]
-) -> Iterable[str]:
-    for index, variable in enumerate(block):
-        if variable is None or variable.name in declaration.hidden:
-            yield "HB_HIDDEN"
-        elif variable.state:
-            yield "HB_STATE"
-        elif index in states:
-            yield "HB_ELEMENT"
-        elif variable.causality is Causality.INPUT:
-            yield "HB_INPUT"
-        elif variable.causality is Causality.PARAMETER:
-            yield "HB_TUNABLE" if variable.variability is Variability.TUNABLE else "HB_FIXED"
-        else:
-            yield "HB_OUTPUT" if variable.causality is Causality.OUTPUT else "HB_LOCAL"
-
-
-def _extents(used: UsedStates) -> list[int]:
-    declaration = used.component.declaration
-    extents = [0] * declaration.first_table
-    for variable in declaration.variables:
-        first = declaration.index[variable.name]
-        extents[first] = int(not variable.items)
-        if variable.nodes and node_name(variable.name, 1) not in declaration.hidden:
-            extents[first + 1] = NODES
-    for first, (_, extent) in used.arrays().items():
-        extents[first] = extent
-    return extents
-
-
-def _rates(declaration: Declaration, block: list[Variable | None]) -> Iterable[int]:
-    """Index of the output that is an output's time derivative, 0 if there is none."""
-    for variable in block:
-        yield declaration.index[variable.rate] if variable and variable.rate else 0
-
-
-def _vectors(used: UsedStates) -> Iterable[str]:
-    """The state vectors whose number of elements a resource file decides."""
-    declaration = used.component.declaration
-    texts = [text.name for text in declaration.texts]
-    for of in used.vectors:
-        v = of.vector
-        if v.text:
-            length, text = declaration.first_table + v.length, texts.index(v.text)
-            yield f"{{{len(of.nominals)}, {length}, {text}, {quoted(v.elements)}}}"
 
 
 def _grammars(texts: Iterable[Text]) -> Iterable[str]:

@@ -8,8 +8,8 @@ from herringbone.components.resources.loader import REPORT, ResourceLoader
 from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Component
 from herringbone.core.declaring.component import unbounded, unchanged
+from herringbone.kernels.compiling.dispatching import CFunction
 from herringbone.kernels.compiling.jit import c_code
-from herringbone.kernels.compiling.linking import CFunction
 
 FAST = {"hb_step", "hb_rhs", "hb_out", "hb_indicators", "hb_answer"}
 """Those that a simulation calls all the time; what they call is made for speed."""

@@ -18,7 +18,8 @@ from herringbone.core import Component, StructureError
 from herringbone.fmi.native.entry_points import FAST, entry_points
 from herringbone.fmi.native.platforms import Platform
 from herringbone.fmi.native.wide import with_wide
-from herringbone.kernels.compiling.linking import CFunction, quickly
+from herringbone.kernels.compiling.dispatching import CFunction
+from herringbone.kernels.compiling.linking import quickly
 
 _OPTIMISATION = 3
 _PLAIN = 1

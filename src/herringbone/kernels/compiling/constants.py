@@ -12,7 +12,7 @@ from numba.core.base import BaseContext
 from numba.core.imputils import lower_constant
 from numba.experimental.function_type import lower_constant_dispatcher
 
-from herringbone.kernels.compiling.linking import KernelDispatcher
+from herringbone.kernels.compiling.dispatching import KernelDispatcher
 
 
 @lower_constant(types.Dispatcher)

@@ -10,16 +10,9 @@ from numba.extending import intrinsic
 
 from herringbone.kernels.compiling import constants, elements  # noqa: F401 (register themselves)
 from herringbone.kernels.compiling.cache import NamedCache, cached
+from herringbone.kernels.compiling.dispatching import CFunction, KernelDispatcher
 from herringbone.kernels.compiling.kept_pieces import kept
-from herringbone.kernels.compiling.linking import (
-    HOT,
-    LINKED,
-    QUICK,
-    RARE,
-    WHOLE,
-    CFunction,
-    KernelDispatcher,
-)
+from herringbone.kernels.compiling.linking import HOT, LINKED, QUICK, RARE, WHOLE
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -22,7 +22,7 @@ from numba.core.funcdesc import FunctionDescriptor
 from numba.core.typing import Signature
 
 from herringbone.kernels.compiling.cache import KernelCache, KernelFiles, cached
-from herringbone.kernels.compiling.linking import KernelDispatcher, entry_name
+from herringbone.kernels.compiling.dispatching import KernelDispatcher, entry_name
 from herringbone.kernels.compiling.pieces import Known, Piece, is_global
 
 _kernels: "WeakValueDictionary[tuple[str, str], KernelDispatcher]" = WeakValueDictionary()

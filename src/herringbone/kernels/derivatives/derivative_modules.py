@@ -12,7 +12,7 @@ from types import ModuleType
 from numba.core.dispatcher import Dispatcher
 
 from herringbone.core.caching.generated import load_generated
-from herringbone.kernels.derivatives.dual_expressions import SUFFIX, mangled
+from herringbone.kernels.derivatives.trees import SUFFIX, mangled
 
 _HEADER = '''"""Tangents of kernels; generated, not to be edited."""
 

@@ -1,18 +1,26 @@
 """Expressions of the kernel language with their tangents (see `forward_mode`)."""
 
 import ast
-import inspect
 import math
-import textwrap
-from collections.abc import Callable
 from types import ModuleType
 from typing import Protocol
 
 from numba.core.dispatcher import Dispatcher
 
 from herringbone.kernels import elementary
+from herringbone.kernels.derivatives.trees import (
+    assignment,
+    definition_of,
+    dotted,
+    expression,
+    is_real,
+    is_target,
+    product,
+    returned_values,
+    sum_of,
+    zero,
+)
 
-SUFFIX = "_dot"
 _DERIVATIVES: dict[object, tuple[str, str]] = {
     elementary.sine: ("sine", "{0}_dot * cosine({0})"),
     elementary.cosine: ("cosine", "-{0}_dot * sine({0})"),
@@ -64,7 +72,7 @@ class DualExpressions:
         self._local = {
             node.id
             for node in ast.walk(self._tree)
-            if isinstance(node, ast.Name) and _is_target(node)
+            if isinstance(node, ast.Name) and is_target(node)
         }
         self._local |= {a.arg for a in arguments}
         self._active = {a.arg for a in arguments if is_real(a.annotation)}
@@ -122,23 +130,23 @@ class DualExpressions:
             return value, None
         match operator:
             case ast.Add():
-                return value, _sum(tp, tq)
+                return value, sum_of(tp, tq)
             case ast.Sub():
-                return value, _sum(tp, tq and ast.UnaryOp(ast.USub(), tq))
+                return value, sum_of(tp, tq and ast.UnaryOp(ast.USub(), tq))
             case ast.Mult():
-                return value, _sum(tp and _product(tp, q), tq and _product(p, tq))
+                return value, sum_of(tp and product(tp, q), tq and product(p, tq))
             case ast.Div():
-                change = tq and ast.UnaryOp(ast.USub(), _product(value, tq))
-                return value, ast.BinOp(_sum(tp, change), ast.Div(), q)
+                change = tq and ast.UnaryOp(ast.USub(), product(value, tq))
+                return value, ast.BinOp(sum_of(tp, change), ast.Div(), q)
             case ast.Pow() if tq is None and tp is not None:
                 lower = ast.BinOp(p, operator, ast.BinOp(q, ast.Sub(), ast.Constant(1)))
-                return value, _product(_product(q, lower), tp)
+                return value, product(product(q, lower), tp)
         raise self._unknown(value)
 
     def _call(self, function: object, call: ast.Call, arguments: list[ast.expr]) -> Dual:
         if function in _LOCALLY_CONSTANT:
             values = [self._value(a) for a in arguments]
-            return ast.Call(_expression(_LOCALLY_CONSTANT[function]), values, []), None
+            return ast.Call(expression(_LOCALLY_CONSTANT[function]), values, []), None
         if function in _DERIVATIVES:
             return self._elementary(function, arguments)
         if not isinstance(function, Dispatcher):
@@ -155,14 +163,14 @@ class DualExpressions:
         name, rule = _DERIVATIVES[function]
         duals = [self._dual(a) for a in arguments]
         if all(t is None for _, t in duals):
-            return ast.Call(_expression(name), [p for p, _ in duals], []), None
+            return ast.Call(expression(name), [p for p, _ in duals], []), None
         names: list[ast.Name] = []
         for p, t in duals:
             names.append(self._temporary())
             self._before.append(assignment([names[-1]], p))
             self._before.append(assignment([dotted(names[-1])], t or zero()))
-        value = ast.Call(_expression(name), [*names], [])
-        return value, _expression(rule.format(*(n.id for n in names)))
+        value = ast.Call(expression(name), [*names], [])
+        return value, expression(rule.format(*(n.id for n in names)))
 
     def _call_of_kernel(self, call: ast.Call) -> ast.Call:
         """The call of a kernel's derivative."""
@@ -203,63 +211,3 @@ class DualExpressions:
             f"{function.__module__}.{function.__name__}: forward mode does not know "
             f"'{ast.unparse(node)}'; write it in the kernel language"
         )
-
-
-def definition_of(kernel: Dispatcher) -> ast.FunctionDef:
-    """The source of a kernel as a tree."""
-    tree = ast.parse(textwrap.dedent(inspect.getsource(kernel.py_func)))
-    return next(s for s in tree.body if isinstance(s, ast.FunctionDef))
-
-
-def mangled(function: Callable) -> str:
-    """A function's name that is unique in a generated module."""
-    return f"{function.__module__.rpartition('.')[2]}_{function.__name__}"
-
-
-def _is_target(node: ast.AST) -> bool:
-    return isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
-
-
-def is_real(annotation: ast.expr | None) -> bool:
-    """True for what has a tangent: reals and arrays of reals."""
-    return annotation is not None and ast.unparse(annotation) in ("float", "np.ndarray")
-
-
-def returned_values(definition: ast.FunctionDef) -> list[ast.expr]:
-    """Annotations of the values that a kernel returns."""
-    annotation = definition.returns
-    if isinstance(annotation, ast.Subscript) and isinstance(annotation.slice, ast.Tuple):
-        return annotation.slice.elts
-    return [annotation] if annotation is not None else []
-
-
-def dotted(e: ast.expr) -> ast.expr:
-    """The tangent of a name, or of an entry of an array."""
-    if isinstance(e, ast.Subscript):
-        return ast.Subscript(dotted(e.value), e.slice)
-    return ast.Name(e.id + SUFFIX)  # type: ignore[attr-defined]  # a name, in this language
-
-
-def _expression(source: str) -> ast.expr:
-    return ast.parse(source, mode="eval").body
-
-
-def zero() -> ast.expr:
-    """A tangent that vanishes."""
-    return ast.Constant(0.0)
-
-
-def _product(p: ast.expr, q: ast.expr) -> ast.expr:
-    return ast.BinOp(p, ast.Mult(), q)
-
-
-def _sum(p: ast.expr | None, q: ast.expr | None) -> ast.expr:
-    """Sum of two tangents, one of which may be zero."""
-    if p is None or q is None:
-        return p or q or zero()
-    return ast.BinOp(p, ast.Add(), q)
-
-
-def assignment(targets: list[ast.expr], value: ast.expr) -> ast.Assign:
-    """One assignment to all targets: every right side is computed before any target changes."""
-    return ast.Assign([ast.Tuple(targets) if len(targets) > 1 else targets[0]], value)

@@ -15,9 +15,9 @@ import textwrap
 from collections.abc import Callable
 
 from herringbone.kernels.derivatives.derivative_modules import Derivatives
-from herringbone.kernels.derivatives.dual_expressions import (
+from herringbone.kernels.derivatives.dual_expressions import DualExpressions
+from herringbone.kernels.derivatives.trees import (
     SUFFIX,
-    DualExpressions,
     assignment,
     definition_of,
     dotted,

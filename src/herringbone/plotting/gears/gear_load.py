@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure, SubFigure
 
 from herringbone.core.declaring.roles import SIDES
@@ -37,8 +36,12 @@ def gear_load_picture(loaded: Loaded, title: str) -> Figure:
 
 
 def write_gear_load_picture(loaded: Loaded, title: str, file: str | Path) -> None:
-    """Write the picture as PNG."""
-    FigureCanvasAgg(gear_load_picture(loaded, title)).print_png(file)
+    """Write the picture.
+
+    Raises:
+        HerringboneError: it cannot be written.
+    """
+    gear_load_picture(loaded, title).savefig(file)
 
 
 def _conditions(loaded: Loaded) -> str:

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from herringbone.gears import GearPair
@@ -43,8 +42,12 @@ def gear_pair_picture(stiffness: MeshStiffness, title: str) -> Figure:
 
 
 def write_gear_pair_picture(stiffness: MeshStiffness, title: str, file: str | Path) -> None:
-    """Write the picture as PNG."""
-    FigureCanvasAgg(gear_pair_picture(stiffness, title)).print_png(file)
+    """Write the picture.
+
+    Raises:
+        HerringboneError: it cannot be written.
+    """
+    gear_pair_picture(stiffness, title).savefig(file)
 
 
 def _teeth(axes: Axes, pair: GearPair) -> None:

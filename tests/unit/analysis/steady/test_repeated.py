@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from herringbone.analysis.steady.marching import repeated as module
-from herringbone.analysis.steady.marching.marched import March
+from herringbone.analysis.steady.marching.march import March
 from herringbone.analysis.steady.marching.parting import Parting
 from herringbone.analysis.steady.marching.repeated import Repeated, with_halved_steps
 

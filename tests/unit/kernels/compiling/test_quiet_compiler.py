@@ -7,8 +7,8 @@ import pytest
 from numba.core import byteflow, ssa
 from numba.core.errors import NumbaWarning, WarningsFixer
 
+from herringbone.kernels.compiling.dispatching import CFunction
 from herringbone.kernels.compiling.jit import c_code
-from herringbone.kernels.compiling.linking import CFunction
 from herringbone.kernels.compiling.quiet import quiet
 
 

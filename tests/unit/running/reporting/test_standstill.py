@@ -10,7 +10,7 @@ from support.result import make_result
 from herringbone.analysis.figures.standstill import STANDSTILL, stands_still, what_to_set
 from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.plotting.pictures import write_pictures
+from herringbone.plotting.runs.pictures import write_pictures
 from herringbone.running.reporting.physical import physical_results
 from herringbone.running.reporting.report import write_report
 from herringbone.running.reporting.run_result import judged

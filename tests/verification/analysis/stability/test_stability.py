@@ -17,7 +17,7 @@ from herringbone.analysis.stability.steps.step_limits import step_limits
 from herringbone.analysis.stability.steps.step_map import MappedPart, linear_part
 from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.cosim.algorithms import LI, Jacobi
-from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.loops.calls import do_step
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system

@@ -6,7 +6,8 @@ from threadpoolctl import threadpool_limits
 
 import herringbone as hb
 from herringbone.analysis.steady.harmonic_balance.fourier import in_time
-from herringbone.analysis.steady.marching.marched import Held, start_of
+from herringbone.analysis.steady.marching.held import Held
+from herringbone.analysis.steady.marching.marched import start_of
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.fused.core import Steps
 

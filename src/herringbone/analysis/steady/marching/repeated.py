@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.marching.marched import Following, March
+from herringbone.analysis.steady.marching.march import March
+from herringbone.analysis.steady.marching.marched import Following
 from herringbone.analysis.steady.marching.parting import Parting, parting
 from herringbone.analysis.steady.searching.guess import SETTLING, beginnings
 from herringbone.analysis.steady.structure import Structure

@@ -16,7 +16,8 @@ import numpy as np
 from herringbone.analysis.steady.harmonic_balance.floquet import Multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion
 from herringbone.analysis.steady.harmonic_balance.problem import in_parts
-from herringbone.analysis.steady.marching.marched import March, mean_turn
+from herringbone.analysis.steady.marching.march import March
+from herringbone.analysis.steady.marching.marched import mean_turn
 from herringbone.analysis.steady.marching.period_map import Course, Ended, PeriodMap
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError

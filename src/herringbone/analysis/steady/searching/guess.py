@@ -9,7 +9,8 @@ from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.fourier import on
 from herringbone.analysis.steady.harmonic_balance.lattice import lines_between
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
-from herringbone.analysis.steady.marching.marched import March, marched
+from herringbone.analysis.steady.marching.march import March
+from herringbone.analysis.steady.marching.marched import marched
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError, ParameterError

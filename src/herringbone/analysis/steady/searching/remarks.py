@@ -1,6 +1,6 @@
 """What is said of a search for a periodic motion."""
 
-from herringbone.analysis.steady.marching.marched import March
+from herringbone.analysis.steady.marching.march import March
 from herringbone.analysis.steady.marching.repeated import Repeated
 from herringbone.analysis.steady.searching.found import Found
 from herringbone.analysis.steady.searching.guess import LONG, SETTLING

@@ -14,7 +14,8 @@ from herringbone.analysis.steady.bending import bending_parts
 from herringbone.analysis.steady.harmonic_balance.accuracy import accuracy
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.marching.marched import Following, March, start_of
+from herringbone.analysis.steady.marching.march import March
+from herringbone.analysis.steady.marching.marched import Following, start_of
 from herringbone.analysis.steady.searching.found import Found, by_marching, by_shooting, none_found
 from herringbone.analysis.steady.searching.guess import (
     LONG,

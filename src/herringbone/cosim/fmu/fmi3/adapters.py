@@ -7,7 +7,7 @@ process that takes those starts without numba.
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from herringbone.kernels.compiling.linking import CFunction
+    from herringbone.kernels.compiling.dispatching import CFunction
 
 ADAPTERS = (
     "set_real", "get_real", "do_step", "get_state", "set_state", "free_state", "get_derivatives",

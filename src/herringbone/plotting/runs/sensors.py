@@ -9,7 +9,7 @@ from herringbone.analysis.figures.sensing.sensors import SensorFigures, sensor_f
 from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
 from herringbone.core import ParameterError
-from herringbone.plotting.panels import DECADES, headline
+from herringbone.plotting.panels import DECADES, MM, headline
 from herringbone.plotting.style import (
     COLOURS,
     MARKER_COLOUR,
@@ -20,7 +20,6 @@ from herringbone.plotting.style import (
 )
 from herringbone.result.result import Result
 
-_MM = 1e3
 _SHOWN_SAMPLES = 80
 _MOST_MARKS = 8
 _LIFT = 0.04
@@ -45,10 +44,10 @@ def sensors(result: Result) -> Figure:
     for i, (name, one) in enumerate(found.items()):
         label = f"{name} ({one.spec.axis})"
         how = {"color": COLOURS[i % len(COLOURS)], "label": label}
-        values = _MM * one.velocity
+        values = MM * one.velocity
         draw_line(whole, one.time, values, **how)
         shown = slice(-_SHOWN_SAMPLES, None)
-        last.plot(_MM * one.time[shown], values[shown], marker=".", linewidth=0.8, **how)
+        last.plot(MM * one.time[shown], values[shown], marker=".", linewidth=0.8, **how)
         _spectrum(spectrum, one, how)
     for axes, unit in ((whole, "s"), (last, "ms")):
         axes.set_xlabel(f"time [{unit}]")
@@ -67,7 +66,7 @@ def _spectrum(axes: Axes, one: SensorFigures, how: dict) -> None:
     found = amplitude_spectrum(samples, 1.0 / one.chain.sampling_hz)
     top = float(found.amplitude.max())
     height = np.maximum(found.amplitude, top * 10.0 ** -(DECADES + 1.0))
-    draw_line(axes, found.frequency, _MM * height, **how)
+    draw_line(axes, found.frequency, MM * height, **how)
 
 
 def _finish(axes: Axes, result: Result, chains: list[VelocitySensor]) -> None:

@@ -1,0 +1,103 @@
+"""Search for steady rotation from a guess: Gauss-Newton with the smallest step in scaled unknowns.
+
+Angles are free up to a common rotation and a system without controller keeps its start speed, so
+that the system of equations has a null space.
+"""
+
+import numpy as np
+
+from herringbone.analysis.answered import Answered
+from herringbone.analysis.rigid_rotation import names_of_states, steady_rows, units_of_states
+from herringbone.analysis.slopes import slopes
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import EquilibriumError
+from herringbone.cosim.structure.system import System
+
+_ITERATIONS, _PATIENCE = 40, 12
+"""At most, and without getting closer: a search that is caught stays so."""
+_CLOSER = 0.9
+_CONVERGED, _NEARLY = 1e-11, 1e-8
+"""Of the first guess; the latter beside parts that answer, where guesses are good already."""
+SCALE = {
+    "m": 1e-6, "m/s": 1e-3, "rad": 1e-3, "rad/s": 1.0, "N.m": 100.0,
+    "kg^1/2.m": 1e-6, "kg^1/2.m/s": 1e-3,
+}  # fmt: skip
+"""Sizes of states, by unit; others 1."""
+_RANK = 1e-12
+
+
+def steady_rotation(
+    system: System,
+    twin: Twin,
+    stay: list[int],
+    x: np.ndarray,
+    answered: Answered | None = None,
+) -> tuple[np.ndarray, float]:
+    """Steady rotation, with some states as they are: states (n,) and scaled residual.
+
+    Args:
+        system: of the twin, as messages name it.
+        twin: of the components.
+        stay: places of the states that keep their values.
+        x: (n,) guess.
+        answered: of the parts that answer, if any; the acceleration is the last unknown then.
+
+    Raises:
+        EquilibriumError: none was found.
+    """
+    rotating, zero = steady_rows(twin)
+    count, scale = x.size, scales(twin)
+    if x.size == 0:
+        return x, 0.0
+    keep = np.setdiff1d(np.arange(count), rotating)
+    if answered is not None:
+        x, scale = np.append(x, 0.0), np.append(scale, answered.size)
+    free = np.ones(x.size)
+    free[stay] = 0.0
+
+    def residual(x: np.ndarray) -> np.ndarray:
+        states = x[:count]
+        steady = 0.0 if answered is None else answered.set(x) * answered.rotation
+        dx = twin.rhs(0.0, states) - steady
+        outputs = twin.observe(np.zeros(1), states[:, None], zero)[0] if zero else np.empty(0)
+        return np.concatenate([dx[keep], outputs])
+
+    r = residual(x)
+    first, best, since = None, np.inf, 0
+    converged = _CONVERGED if answered is None else _NEARLY
+    for iteration in range(_ITERATIONS):
+        jacobian = slopes(residual, x, r, scale, range(x.size)) * free
+        rows = np.abs(jacobian).max(axis=1)
+        rows[rows == 0.0] = 1.0
+        scaled = np.abs(r / rows).max()
+        first = first or max(scaled, 1.0)
+        if scaled < converged * first:
+            return x, float(scaled / first)
+        if scaled < _CLOSER * best:
+            best, since = scaled, iteration
+        if iteration - since >= _PATIENCE:
+            break
+        step = np.linalg.lstsq(jacobian / rows[:, None], -r / rows, rcond=_RANK)[0] * scale * free
+        x, r = _line_search(residual, x, r, step, rows)
+    names = [f"the rate of {name}" for name in names_of_states(twin)]
+    worst = [*(names[k] for k in keep), *zero][int(np.argmax(np.abs(r / rows)))]
+    raise EquilibriumError(
+        f"no steady rotation of '{system.name}' was found in {iteration + 1} iterations: {worst} "
+        "does not vanish; look for a load there that nothing balances, or start with --start rest"
+    )
+
+
+def scales(twin: Twin) -> np.ndarray:
+    """Sizes of the states."""
+    return np.array([SCALE.get(unit, 1.0) for unit in units_of_states(twin)])
+
+
+def _line_search(residual, x: np.ndarray, r: np.ndarray, step: np.ndarray, rows: np.ndarray):  # noqa: ANN001, ANN202
+    """Halve the step until the scaled residual falls; the last trial is taken in any case."""
+    before = np.linalg.norm(r / rows)
+    for k in range(12):
+        trial = x + step * 0.5**k
+        new = residual(trial)
+        if np.linalg.norm(new / rows) < before:
+            break
+    return trial, new
