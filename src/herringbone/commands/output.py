@@ -15,6 +15,7 @@ from types import FrameType
 from herringbone.core import HerringboneError
 from herringbone.core.errors import reason
 from herringbone.core.termination import forget_signals, note_signal
+from herringbone.core.wording import words_of_commands
 
 _SELDOM = 20_000, 10, 5
 """Thresholds of Python's three generations of objects."""
@@ -57,7 +58,7 @@ def limits_told() -> Iterator[None]:
 @contextlib.contextmanager
 def as_command() -> Iterator[None]:
     """Context of a whole command: it can be ended, shows warnings, and tells what it lacks."""
-    with terminable(), logged(), seldom_collected(), limits_told():
+    with words_of_commands(), terminable(), logged(), seldom_collected(), limits_told():
         yield
 
 
