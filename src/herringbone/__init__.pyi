@@ -17,14 +17,17 @@ from .cosim.structure.system import System as System
 from .result.folder.load import load as load
 from .result.result import Result as Result
 from .running.api import run as run
+from .running.charting.chart import chart as chart
 from .running.exporting.export import build_fmus as build_fmus
 from .running.operating.modes import modes as modes
+from .running.operating.stability import stability as stability
 from .running.operating.steady import steady as steady
 from .running.own_master import connections as connections
 from .running.own_master import start_values as start_values
 from .scenes import Ask as Ask
 from .scenes import Scene as Scene
 from .studies.api import sweep as sweep
+from .studies.exporting import export as export
 from .studies.planning.plan import Plan as Plan
 from .studies.planning.plan import plan as plan
 from .studies.sweep import Sweep as Sweep

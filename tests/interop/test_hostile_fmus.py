@@ -171,7 +171,7 @@ def test_a_signal_keeps_what_was_computed(system, tmp_path, number):
         time.sleep(0.1)
         process.send_signal(number)
         process.communicate(timeout=60)
-    assert process.returncode == 130
+    assert process.returncode == 128 + number
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["outcome"] == "interrupted"
     assert (tmp_path / "out" / "results.csv").is_file()

@@ -63,6 +63,7 @@ EXCEPTIONS: dict[str, set[str]] = {
     "fmi/check.py": {"cosim"},  # checks an FMU as the master would run it
     "fmi/host.py": {"cosim"},
     "analysis/accuracy/comparison.py": {"plotting"},  # draws itself, as a result does
+    "analysis/accuracy/work_precision.py": {"plotting"},
     "analysis/steady/periodic.py": {"plotting"},
 }
 """What single files may import besides."""

@@ -6,7 +6,6 @@ from pathlib import Path
 from herringbone.commands.options import assignments
 from herringbone.commands.output import check_writable, show
 
-_ALL = "all"
 _SET = "COMPONENT.PARAMETER=FILE"
 
 
@@ -43,21 +42,6 @@ def add_platform_options(sub: argparse.ArgumentParser) -> None:
     )
 
 
-def chosen_platforms(options: argparse.Namespace) -> list[str]:
-    """The names of the platforms that were asked for."""
-    from herringbone.fmi.native import PLATFORMS  # noqa: PLC0415
-
-    return list(PLATFORMS) if options.platforms == [_ALL] else options.platforms
-
-
-def untested(platforms: list[str]) -> list[str]:
-    """A line that names the platforms whose binaries were built but cannot be run here, if any."""
-    from herringbone.fmi.native import PLATFORMS  # noqa: PLC0415
-
-    names = [name for name in platforms if not PLATFORMS[name].tested]
-    return [f"built, not run: {', '.join(names)}"] if names else []
-
-
 def run(options: argparse.Namespace) -> int:
     """Build, and show the files and what is to be known of them.
 
@@ -65,7 +49,11 @@ def run(options: argparse.Namespace) -> int:
         HerringboneError: something about the options is wrong, or the build fails.
     """
     from herringbone.core import ParameterError  # noqa: PLC0415
-    from herringbone.running.exporting.export import build_fmus  # noqa: PLC0415 (numba: only when something is built)
+    from herringbone.running.exporting.export import (  # noqa: PLC0415 (numba: only when it builds)
+        build_fmus,
+        chosen_platforms,
+        untested,
+    )
 
     if not options.native and (options.platforms or options.fmi != 2):
         raise ParameterError(
@@ -78,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
         )
     if options.output:
         check_writable(options.output)
-    platforms = chosen_platforms(options)
+    platforms = chosen_platforms(options.platforms)
     files = assignments(options.set, "--set", _SET)
     fmus = build_fmus(
         options.component,

@@ -2,16 +2,12 @@
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from herringbone.commands.build import add_platform_options, chosen_platforms, untested
+from herringbone.commands.build import add_platform_options
 from herringbone.commands.options import add_scene, add_start_values, given_by
 from herringbone.commands.output import check_writable, show
-from herringbone.core.declaring.hosting import Given, Wanted
+from herringbone.core.declaring.hosting import Given
 from herringbone.core.declaring.roles import GEARS
-
-if TYPE_CHECKING:
-    from herringbone.scenes import Scene
 
 _SHOWN = {
     "internals": "all variables of its parts, as locals",
@@ -76,95 +72,23 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HerringboneError: something about the options is wrong, or the export fails.
     """
-    _check(options)
+    from herringbone.studies.exporting import export  # noqa: PLC0415 (numba: only when it exports)
+
     made = ""
     if options.output:
         check_writable(options.output.parent, options.output)
         made = "" if options.output.parent.exists() else str(options.output.parent)
-    for line in (_one_fmu if options.as_fmu else _ssp_file)(options):
-        show(line)
+    same = ("as_fmu", "scene", "step", "plan", "outside", "outputs", "python", "nested", *GEARS)
+    file = export(
+        options.system,
+        options.output,
+        **{name: getattr(options, name) for name in (*same, *_SHOWN)},
+        platforms=options.platforms,
+        fmi=options.fmi,
+        **given_by(options),
+        told=show,
+    )
+    show(str(file))
     if made:
         show(f"{made} was made for it: there was no such folder")
     return 0
-
-
-def _check(options: argparse.Namespace) -> None:
-    """Refuse options that belong to the other kind of file."""
-    from herringbone.core import ParameterError  # noqa: PLC0415
-
-    if options.as_fmu:
-        if options.step is not None:
-            raise ParameterError("--step belongs to .ssp files; an FMU takes any step")
-        if options.nested or options.python:
-            raise ParameterError("--nested and --python belong to .ssp files; leave out --as-fmu")
-        return
-    if options.plan:
-        raise ParameterError("--plan: a leaner model is one FMU; add --as-fmu")
-    if options.outside or options.fmi != 2 or _wanted(options) != Wanted():
-        raise ParameterError(
-            "--outside, --fmi, flanges and variables belong to one FMU; add --as-fmu"
-        )
-    if options.platforms and options.python:
-        raise ParameterError("--platforms chooses among native FMUs; leave out --python")
-
-
-def _one_fmu(options: argparse.Namespace) -> list[str]:
-    """The whole system as one FMU."""
-    from herringbone.cosim.structure.system_file import short_name  # noqa: PLC0415
-    from herringbone.running.exporting.export import fmu_file_name  # noqa: PLC0415
-    from herringbone.running.exporting.system_fmu import export_fmu  # noqa: PLC0415
-
-    platforms = chosen_platforms(options)
-    lines, scene = _planned(options) if options.plan else ([], options.scene)
-    file = export_fmu(
-        options.system,
-        options.output or Path(fmu_file_name(short_name(options.system), options.fmi)),
-        outside=options.outside,
-        scene=scene,
-        **given_by(options),
-        platforms=platforms,
-        fmi=options.fmi,
-        wanted=_wanted(options),
-    )
-    return [*lines, str(file), *untested(platforms)]
-
-
-def _ssp_file(options: argparse.Namespace) -> list[str]:
-    """An FMU for each part, and how they are connected."""
-    from herringbone.cosim.structure.system_file import short_name  # noqa: PLC0415
-    from herringbone.running.exporting.export import export_ssp  # noqa: PLC0415
-
-    platforms = chosen_platforms(options)
-    file = export_ssp(
-        options.system,
-        options.output or Path(f"{short_name(options.system)}.ssp"),
-        scene=options.scene,
-        step=options.step,
-        **given_by(options),
-        native=not options.python,
-        platforms=platforms,
-        nested=options.nested,
-    )
-    return [str(file), *untested(platforms)]
-
-
-def _planned(options: argparse.Namespace) -> "tuple[list[str], Scene]":
-    """A plan's text, and its scene."""
-    from herringbone.studies.planning.plan import plan  # noqa: PLC0415 (numba)
-    from herringbone.studies.planning.text import plan_text  # noqa: PLC0415
-
-    found = plan(options.system, scene=options.scene, **given_by(options), for_fmu=True)
-    return plan_text(found), found.scene
-
-
-def _wanted(options: argparse.Namespace) -> Wanted:
-    """What the host of a gearbox gives and wants to see."""
-    given = {gear: Given(getattr(options, gear)) for gear in GEARS if getattr(options, gear)}
-    return Wanted(
-        given,
-        tuple(options.outputs),
-        internals=options.internals,
-        nodes=options.nodes,
-        parameters=options.parameters,
-        exchange=options.me,
-    )

@@ -34,6 +34,8 @@ from herringbone.core import (
     HerringboneError,
     OutcomeKind,
 )
+from herringbone.core.termination import EXIT_CODE as TERMINATED
+from herringbone.core.termination import is_terminating
 from herringbone.cosim.cell.policy import Policy, foreign_fmu_policy
 
 
@@ -51,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             code = options.command(options)
             for remark in housing.remarks:  # a run has told its own
                 say(f"note: {remark}")
-            return code
+            return _by_signal() if code == EXIT_CODES[OutcomeKind.INTERRUPTED] else code
     except HerringboneError as error:
         say(f"herringbone: {error}")
         if options.debug:
@@ -59,7 +61,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return BAD_INPUT
     except KeyboardInterrupt:
         say("herringbone: interrupted")
-        return EXIT_CODES[OutcomeKind.INTERRUPTED]
+        return _by_signal()
+
+
+def _by_signal() -> int:
+    """Exit code of what a signal has ended."""
+    return TERMINATED if is_terminating() else EXIT_CODES[OutcomeKind.INTERRUPTED]
 
 
 def _housing(options: argparse.Namespace) -> AbstractContextManager[Policy]:

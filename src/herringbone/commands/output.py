@@ -10,9 +10,12 @@ import threading
 from collections.abc import Iterator
 from errno import ENOENT
 from pathlib import Path
+from types import FrameType
 
 from herringbone.core import HerringboneError
 from herringbone.core.errors import reason
+from herringbone.core.termination import forget_signals, note_signal
+from herringbone.core.wording import words_of_commands
 
 _SELDOM = 20_000, 10, 5
 """Thresholds of Python's three generations of objects."""
@@ -55,7 +58,7 @@ def limits_told() -> Iterator[None]:
 @contextlib.contextmanager
 def as_command() -> Iterator[None]:
     """Context of a whole command: it can be ended, shows warnings, and tells what it lacks."""
-    with terminable(), logged(), seldom_collected(), limits_told():
+    with words_of_commands(), terminable(), logged(), seldom_collected(), limits_told():
         yield
 
 
@@ -78,13 +81,20 @@ def logged() -> Iterator[None]:
         logger.removeHandler(lines)
 
 
+def _terminated(number: int, frame: FrameType | None) -> None:
+    """Handler of SIGTERM."""
+    note_signal(number)
+    signal.default_int_handler(number, frame)
+
+
 @contextlib.contextmanager
 def terminable() -> Iterator[None]:
     """Context in which SIGTERM ends a command as SIGINT does; only in the main thread."""
+    forget_signals()
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    before = signal.signal(signal.SIGTERM, _terminated)
     try:
         yield
     finally:

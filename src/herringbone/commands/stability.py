@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from functools import partial
@@ -23,6 +22,7 @@ from herringbone.commands.options import (
 from herringbone.commands.output import check_writable, say, show
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.places.files import write_whole
+from herringbone.running.operating.one_step import check_asked
 
 if TYPE_CHECKING:
     from herringbone.analysis.stability.atlas import Panel
@@ -92,28 +92,20 @@ def _predicted(options: argparse.Namespace, panels: list["Panel"], tell: Tell) -
     """What is predicted, of one step or of all; the panels of an atlas are added."""
     from tqdm import tqdm  # noqa: PLC0415
 
-    from herringbone.cosim.algorithms import parse_algorithm, refuse_adaptive  # noqa: PLC0415
-    from herringbone.running.foreign.predictable import predictable  # noqa: PLC0415 (numba)
-    from herringbone.running.operating.commanded import operated  # noqa: PLC0415
-    from herringbone.running.prepared import Wishes  # noqa: PLC0415
-    from herringbone.scenes import Start  # noqa: PLC0415
+    from herringbone.running.operating.stability import fixed_steps, known_before  # noqa: PLC0415
+    from herringbone.running.prepared import Wishes  # noqa: PLC0415 (numba)
 
-    algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
-    refuse_adaptive(algorithms, "stability is predicted for fixed steps")
-    wishes = Wishes(
-        start=Start.EQUILIBRIUM,
-        start_offset={},
-        **given_by(options),
-        replace_parts=replacements(options),
-    )
-    wishes = operated(options.system, options.scene, wishes, **operating_point(options))
+    algorithms = fixed_steps(options.algorithm or ())
+    wishes = Wishes(**given_by(options), replace_parts=replacements(options))
     bar = tqdm(unit=" matrices", disable=None)
 
     def show(algorithm: str) -> None:
         bar.set_description(algorithm, refresh=False)
         bar.update()
 
-    with bar, predictable(options.system, options.scene, wishes, tell) as found:
+    at = operating_point(options)
+    known = known_before(options.system, options.scene, at["speed"], at["torque"], wishes, tell)
+    with bar, known as found:
         if options.step is not None:
             return _of_step(found, algorithms, options.step, show)
         return _of_all_steps(found, algorithms, options, panels, show)
@@ -144,26 +136,13 @@ def _of_all_steps(
     show: Callable[[str], None],
 ) -> Told:
     """Stable steps, bonds and a recommendation; see `_predicted`."""
-    from herringbone.analysis.stability import limits, report  # noqa: PLC0415
+    from herringbone.analysis.stability import report  # noqa: PLC0415
     from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
-    from herringbone.analysis.stability.surrogates.operating_point import (  # noqa: PLC0415
-        linear_at,
-    )
+    from herringbone.running.operating.stability import stability_before  # noqa: PLC0415
 
     if of.strangers and options.atlas:
         raise ParameterError("--atlas takes no foreign FMUs; leave it out")
-    found = limits.stability(
-        of.system,
-        of.scene,
-        algorithms,
-        tolerance=options.tolerance,
-        simulate=options.simulate,
-        progress=show,
-        strangers=of.strangers,
-        started=of.started,
-        remember=of.known,
-    )
-    found = replace(found, notes=(*of.missing, *linear_at(of.strangers), *found.notes))
+    found = stability_before(of, algorithms, options.tolerance, options.simulate, show)
     if options.atlas:
         panels += atlas(of.system, progress=show)
         found = replace(found, notes=(*found.notes, *unscaled(of.system)))
@@ -171,13 +150,9 @@ def _of_all_steps(
 
 
 def _check(options: argparse.Namespace) -> None:
-    step = options.step
-    if step is None:
-        return
-    if not (math.isfinite(step) and step > 0.0):
-        raise ParameterError(f"step = {step:g} s: it must be positive and finite")
-    for name in ("simulate", "atlas", "output"):
-        if getattr(options, name):
+    check_asked(options.step, simulate=options.simulate)
+    for name in ("atlas", "output"):
+        if options.step is not None and getattr(options, name):
             raise ParameterError(f"--step asks about one step; leave --{name} out")
 
 

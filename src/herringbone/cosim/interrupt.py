@@ -8,6 +8,8 @@ import signal
 import threading
 from types import FrameType
 
+from herringbone.core.termination import note_signal
+
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -24,7 +26,8 @@ class InterruptFlag:
         return self
 
     def _set(self, number: int, frame: FrameType | None) -> None:
-        del number, frame
+        del frame
+        note_signal(number)
         self.raised = True
 
     def __exit__(self, *exception: object) -> None:

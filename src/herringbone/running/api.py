@@ -1,6 +1,7 @@
 """Running a system: from names and options to a result."""
 
 from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
 from pathlib import Path
 
 from herringbone.analysis.steady.set_points import Point
@@ -26,6 +27,7 @@ from herringbone.running.housings.fmu_remarks import HousingRemarks, with_remark
 from herringbone.running.operating.by_hand import said_by_hand
 from herringbone.running.operating.commanded import operated
 from herringbone.running.operating.lean import certified_row, lean_notes
+from herringbone.running.output.by_script import placed
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
@@ -61,7 +63,8 @@ def run(
     record: str | Sequence[str] = (),
     progress: bool | Progress = False,
     recorded: Callable[[Result], None] | None = None,
-    output: RunOutput | None = None,
+    output: str | PathLike[str] | RunOutput | None = None,
+    overwrite: bool = False,
 ) -> Result:
     """Run a system.
 
@@ -116,8 +119,11 @@ def run(
         recorded: called with the result as soon as the run has ended, before the parts are
             terminated and freed, which a part may not survive; errors against the twin, and
             why a run is unstable, are found after that, and are in the result that is returned.
-        output: folder that is claimed before the run, and into which its rows go while it goes on;
-            of a long run the result then has the last records only, see `docs/results_folder.md`.
+        output: folder for the results, into which rows go while the run goes on, and which
+            `herringbone.load` and the commands read; pictures are drawn by `herringbone plot`. Of a
+            long run the result then has the last records only, see `docs/results_folder.md`. None:
+            nothing is written.
+        overwrite: results of other settings in the folder may be replaced.
 
     Returns:
         The result; a run that ends early or is unstable is an outcome of it, not an exception.
@@ -128,7 +134,6 @@ def run(
     record = (record,) if isinstance(record, str) else record
     check_record(record, fuse=fuse)
     check_called("progress", progress)
-    _check_output(output)
     check_kind(fmu=fuse and fmu != AUTO_FMU)
     coupling = _asked_for(algorithm)
     if tolerance is not None:
@@ -147,6 +152,7 @@ def run(
     with (
         one_blas_thread(),
         foreign_fmu_policy(in_process=in_process, deadline=call_deadline),
+        placed(output, recorded, overwrite=overwrite) as place,
     ):
         structure, chosen, notes = prepared(
             system,
@@ -158,12 +164,14 @@ def run(
         )
         by_hand = said_by_hand(system, scene, wishes, Point(speed, torque))
         notes, left_out = notes + by_hand.notes, by_hand.row or certified_row(chosen.model)
-        heard = Heard(progress, recorded, output)
+        heard = Heard(progress, place.recorded, place.output)
         if fuse and not structure.foreign_parts:
             check_coupling(algorithm=algorithm, slow=slow, probe=probe)
             said = (*notes, *lean_notes(chosen.model, values or {}, speed, torque))
             wanted = FusedAsked(step, tolerance, tuple(record), said, left_out)
-            return fused_run(structure, chosen, wanted, heard, reference=reference, verify=verify)
+            return place.complete(
+                fused_run(structure, chosen, wanted, heard, reference=reference, verify=verify)
+            )
         asked = Asked(
             fmu,
             coupling,
@@ -178,7 +186,7 @@ def run(
             left_out=left_out,
         )
         found = coupled_run(structure, chosen, asked, heard, reference=reference, verify=verify)
-        return with_remarks(found, remarks)
+        return place.complete(with_remarks(found, remarks))
 
 
 def _check_times(scene: Scene, step: float | None) -> None:
@@ -199,12 +207,3 @@ def _asked_for(algorithm: str | Algorithm | None) -> Algorithm | None:
             "LI(degree=3)"
         )
     return algorithm
-
-
-def _check_output(output: RunOutput | None) -> None:
-    """Refuse the name of a folder, which says nothing of what may be overwritten there."""
-    if output is not None and not isinstance(output, RunOutput):
-        raise ParameterError(
-            f"output = {output!r:.60}: it takes a RunOutput; write the table by "
-            "result.to_csv(FILE), or a results folder by 'herringbone run -o FOLDER'"
-        )

@@ -11,7 +11,6 @@ from herringbone.commands.main import main
 from herringbone.core import OutcomeKind, ParameterError, StructureError
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.running.charting.measure import measure
 from herringbone.running.fused.fused import refuse_strangers
 from herringbone.running.reporting.summary import summary_text
 
@@ -106,7 +105,7 @@ def test_half_the_step_over_the_whole_run():
 
 
 def test_curves_of_the_chart():
-    found = measure(
+    found = hb.chart(
         "gearbox", algorithms=["li:degree=3"], steps=[5e-5, 1e-4], t_end=5e-3, fmu="in-process",
         fuse=True,
     )  # fmt: skip

@@ -12,7 +12,7 @@ WRONG = [
     (lambda: hb.run("test_rig", replace_parts="M.fmu"), "replace_parts = 'M.fmu': it takes values"),
     (lambda: hb.run("test_rig", algorithm=hb.LI), r"'li:degree=3' or LI\(degree=3\)"),
     (lambda: hb.run("test_rig", progress="yes"), "progress = 'yes': it takes True, False or a"),
-    (lambda: hb.run("test_rig", output="out"), r"output = 'out': .* result.to_csv\(FILE\)"),
+    (lambda: hb.run("test_rig", output=3), "output = 3: it takes the path of a folder"),
     (lambda: hb.sweep("test_rig", speed=100.0), r"speed = 100.0: .* give \[100.0\]"),
     (lambda: hb.sweep("test_rig", vary={"a.b": "x.csv"}), r"a.b = 'x.csv': .* give \['x.csv'\]"),
     (lambda: hb.sweep("test_rig", vary=[1.0]), r"vary = \[1.0\]: it takes values by name"),

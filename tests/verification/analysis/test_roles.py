@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from support.hardening_bearings import HARDENING_BEARINGS
 
+import herringbone as hb
 from herringbone.analysis.figures.radiated_power import radiated_power
 from herringbone.analysis.stability.atlas import scaled_bearings, two_rotors, unscaled
 from herringbone.analysis.stability.diagnosis import diagnose
@@ -25,7 +26,6 @@ from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.plotting import PICTURES, overview
 from herringbone.running.api import run
-from herringbone.running.charting.measure import measure
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.reporting.summary import summary_text
 from herringbone.running.start import started
@@ -140,7 +140,7 @@ def stable(reference) -> str:
 
 
 def charted(reference) -> list[tuple]:
-    found = measure(
+    found = hb.chart(
         reference, algorithms=["li:degree=3"], steps=[4e-5], t_end=2e-3, fmu="in-process"
     )
     assert found.mode_count > 0

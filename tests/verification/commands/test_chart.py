@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 
+import herringbone as hb
 from herringbone.commands.main import main
 from herringbone.core import ParameterError
 from herringbone.housing import default_housing
-from herringbone.running.charting.measure import measure
 
 T_END = 0.005
 JACOBI_1, JACOBI_2, LI_3 = "jacobi:order=1", "jacobi:order=2", "li:degree=3"
@@ -19,7 +19,7 @@ STEPS = {JACOBI_2: (2e-6, 4e-6, 8e-6), LI_3: (2e-5, 4e-5)}
 
 @pytest.fixture(scope="module")
 def chart():
-    return measure(
+    return hb.chart(
         "test_rig",
         algorithms=(JACOBI_1, JACOBI_2, LI_3),
         steps=(2e-6, 4e-6, 8e-6, 2e-5, 4e-5),
@@ -60,7 +60,7 @@ def test_cost_and_internals(chart):
 def test_curve_of_adaptive_li():
     """Error over tolerance between 0.1 and 5, at the twin's values where the steps end."""
     tolerances = (1e-2, 1e-3, 1e-4)
-    found = measure(
+    found = hb.chart(
         "test_rig", algorithms=(LI_3,), steps=(4e-5,), tolerances=tolerances, t_end=0.02,
         fmu="in-process",
     )  # fmt: skip
@@ -78,12 +78,12 @@ def test_curve_of_adaptive_li():
     [
         ({"tolerances": (2.0,)}, "li: tolerance=2; it must lie between"),
         ({"tolerances": (0.0,)}, "tolerances: 0 keeps the step"),
-        ({"algorithms": ("li:tolerance=1e-3",)}, "over steps or over --tolerances; leave the"),
+        ({"algorithms": ("li:tolerance=1e-3",)}, "over steps or over tolerances; leave the"),
     ],
 )
 def test_bad_tolerances(options, words):
     with pytest.raises(ParameterError, match=words):
-        measure("test_rig", **options)
+        hb.chart("test_rig", **options)
 
 
 def test_command(tmp_path, capsys):

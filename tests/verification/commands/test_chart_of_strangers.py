@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+import herringbone as hb
 from herringbone.commands.main import main
 from herringbone.core import ParameterError
-from herringbone.running.charting.measure import measure
 
 CONNECTIONS = [["one.fo", "two.f"], ["two.x", "one.xo"], ["two.v", "one.vo"]]
 VALUES = {"one.k": 10.0, "one.ko": 100.0, "one.co": 0.01, "two.k": 1000.0, "one.v0": 1.0}
@@ -24,7 +24,7 @@ def oscillator(kinds, tmp_path):
 
 def test_slope_of_held_inputs(oscillator):
     """Fourth order in the step, from 1 to 8 ms."""
-    found = measure(oscillator, algorithms=("li:degree=3",), steps=STEPS, t_end=1.0, values=VALUES)
+    found = hb.chart(oscillator, algorithms=("li:degree=3",), steps=STEPS, t_end=1.0, values=VALUES)
     errors = [point.worst for point in sorted(found.points, key=lambda p: p.step)]
     slope = np.polyfit(np.log(STEPS), np.log(errors), 1)[0]
     assert slope == pytest.approx(4.0, abs=0.1)
@@ -33,7 +33,7 @@ def test_slope_of_held_inputs(oscillator):
 
 def test_adaptive_steps_are_refused(oscillator):
     with pytest.raises(ParameterError, match="fixed steps only"):
-        measure(oscillator, algorithms=("li",), tolerances=(1e-3,), t_end=1.0, steps=STEPS)
+        hb.chart(oscillator, algorithms=("li",), tolerances=(1e-3,), t_end=1.0, steps=STEPS)
 
 
 def test_bench_of_other_parts(capsys):

@@ -19,6 +19,7 @@ from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
 from herringbone.core.declaring.variable import Causality
 from herringbone.cosim.structure.system_file import read_system
+from herringbone.running.reporting.progress import Bar
 
 KEYS = {
     "outcome", "scene", "model", "t_end", "communication_step", "micro_step", "algorithm",
@@ -203,3 +204,21 @@ def test_interrupt(tmp_path, fmu):
     assert table.notna().all(axis=None)
     assert 0.0 < summary["t_reached"] < 60.0
     assert table["time"].iloc[-1] == pytest.approx(summary["t_reached"], abs=2e-5)
+
+
+def test_a_terminated_run_keeps_its_rows_and_draws_nothing(tmp_path, capsys, monkeypatch):
+    """Who terminates kills after some seconds: pictures can be drawn later."""
+
+    def show(bar, reached, end):
+        if reached > 0.01:
+            signal.raise_signal(signal.SIGTERM)
+
+    monkeypatch.setattr(Bar, "show", show)
+    folder = tmp_path / "run"
+    arguments = ["run", "gearbox", "--fmu", "in-process", "--t-end", "5", "-o", str(folder)]
+    assert main(arguments) == 128 + signal.SIGTERM
+    said = capsys.readouterr().err
+    assert f"no pictures; 'herringbone plot {folder}' draws them" in said
+    assert json.loads((folder / "summary.json").read_text())["outcome"] == "interrupted"
+    assert len(pd.read_csv(folder / "results.csv")) > 1
+    assert not list(folder.glob("*.png"))

@@ -11,10 +11,14 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from herringbone.core import OutcomeKind
+from herringbone.core.facts import Facts
 from herringbone.core.places.files import replacing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _TOLERANCE = re.compile(r"(tolerance=)[^,]+")
 MARKS = {">": "no larger step was tried", "!": "the next larger one failed"}
@@ -93,8 +97,8 @@ class Reach:
         return {"ladder": ">", "failure": "!"}.get(self.limited, "")
 
 
-@dataclass(frozen=True)
-class WorkPrecision:
+@dataclass(frozen=True, repr=False)
+class WorkPrecision(Facts):
     """Speed and accuracy of coupling algorithms on one scene.
 
     Attributes:
@@ -155,6 +159,25 @@ class WorkPrecision:
             passes = last.passes_per_ms * (p.passes_per_ms / last.passes_per_ms) ** share
             return Reach(step, passes, "error")
         return Reach(last.step, last.passes_per_ms, "ladder") if last else None
+
+    def plot(self) -> "Figure":
+        """Error against passes and against time, as the command `chart` draws it."""
+        from herringbone.plotting.work_precision import (  # noqa: PLC0415 (matplotlib: lazy)
+            chart_picture,
+        )
+
+        return chart_picture(self)
+
+    def _facts(self) -> dict[str, str]:
+        good = sum(not point.failed for point in self.points)
+        return {
+            "system": self.system,
+            "scene": self.scene,
+            "algorithms": ", ".join(self.algorithms),
+            "runs": f"{len(self.points)} of {self.t_end:g} s, {good} of them good",
+            "FMUs": self.fmu,
+            "notes": "; ".join(self.notes),
+        }
 
     def rows(self) -> list[dict[str, Any]]:
         """Points as plain values; what is not finite is None."""

@@ -27,6 +27,7 @@ from herringbone.analysis.stability.surrogates.sampled import common_steps
 from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.facts import Facts
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, Jacobi
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
@@ -35,8 +36,8 @@ Remember = Callable[[Algorithm, bool, Callable[[], StepLimits]], StepLimits]
 """Limits of an algorithm, with those that runs show or without: known ones, or found by a call."""
 
 
-@dataclass(frozen=True)
-class Stability:
+@dataclass(frozen=True, repr=False)
+class Stability(Facts):
     """What is known of a system's coupling before a run.
 
     Attributes:
@@ -66,6 +67,21 @@ class Stability:
     def recommended(self) -> Recommendation | None:
         """The best algorithm and step; None if none is ranked."""
         return self.ranking.best
+
+    def __str__(self) -> str:
+        from herringbone.analysis.stability.report import stability_text  # noqa: PLC0415 (of this)
+
+        return stability_text(self)
+
+    def _facts(self) -> dict[str, str]:
+        best = self.recommended
+        return {
+            "system": self.system,
+            "scene": self.scene,
+            "recommended": f"{best.algorithm}, step {best.step:.3g} s" if best else "",
+            "first unstable": ", ".join(f"{x.algorithm} {x.limit:.3g} s" for x in self.limits),
+            "notes": "; ".join(self.notes),
+        }
 
 
 def default_algorithms() -> tuple[Algorithm, ...]:

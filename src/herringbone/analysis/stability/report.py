@@ -12,6 +12,7 @@ from herringbone.analysis.stability.recommendation import Ranking, Recommendatio
 from herringbone.analysis.stability.steps.simulated_limit import HIGHEST, LOWEST
 from herringbone.analysis.stability.steps.step_limits import StepLimits
 from herringbone.analysis.stability.steps.step_scan import LARGEST_STEP
+from herringbone.core.wording import option
 
 _MICRO = 1e6
 _WIDTH = 100
@@ -148,7 +149,8 @@ def _recommended(ranking: Ranking, tolerance: float) -> list[str]:
         rows.append((name, _us(found.step), f"{found.passes_per_ms:.3g}"))
     return [
         f"recommended for {100.0 * tolerance:g} %: "
-        f"--algorithm {chosen.algorithm.removesuffix(_SCHEDULE)} --step {chosen.step:.3g}",
+        f"{option('algorithm', chosen.algorithm.removesuffix(_SCHEDULE))} "
+        f"{option('step', float(f'{chosen.step:.3g}'))}",
         f"expected error {100.0 * chosen.expected_error:.2g} %, bounded by "
         f"{chosen.bounded_by}; {100.0 * chosen.separation_error:.2g} % where teeth separate",
         *wrap(f"rule: {chosen.source}", _WIDTH),

@@ -52,12 +52,12 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
-    from herringbone.commands.chart.report import chart  # noqa: PLC0415 (numba)
+    from herringbone.commands.chart.report import charted  # noqa: PLC0415 (numba)
 
     check_writable(options.output or Path("results"))
     given = {"algorithms": options.algorithm, **vars(options)}
     given = {name: given[name] for name in ("algorithms", "steps", "tolerances", "t_end")}
-    text, outcome = chart(
+    text, outcome = charted(
         options.system,
         options.output,
         as_json=options.json,

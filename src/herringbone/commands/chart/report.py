@@ -1,23 +1,22 @@
 """The speed-accuracy chart of a system's scene: runs, table, picture, files."""
 
 import json
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tqdm import tqdm
-
 from herringbone.analysis.accuracy.work_precision import MARKS, Reach, WorkPrecision
 from herringbone.core import HerringboneError, OutcomeKind
 from herringbone.core.places.files import write_whole
-from herringbone.running.charting.measure import measure
+from herringbone.running.charting.chart import chart
 
 LEVELS = (1e-2, 1e-3)
 """Errors at which steps are compared [1]."""
 _FILES = ("chart.csv", "chart.json", "chart.png")
 
 
-def chart(
+def charted(
     system: str,
     folder: Path | None,
     *,
@@ -27,10 +26,10 @@ def chart(
     """Measure, write chart.csv, chart.json and chart.png, and say what came out.
 
     Args:
-        system: see `measure`.
+        system: see `herringbone.chart`.
         folder: for the files; results/chart-SYSTEM-SCENE if not given.
         as_json: one JSON object in place of a table.
-        options: see `measure`.
+        options: see `herringbone.chart`.
 
     Returns:
         What to show, and "interrupted" or "completed".
@@ -38,13 +37,7 @@ def chart(
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
-    with tqdm(unit=" runs", disable=None, bar_format="{n} runs [{elapsed}] {desc}") as bar:
-
-        def show(algorithm: str, step: float) -> None:
-            bar.set_description_str(f"{algorithm} at {step * 1e6:.4g} us", refresh=False)
-            bar.update()
-
-        found = measure(system, progress=show, **options)
+    found = chart(system, progress=sys.stderr.isatty(), **options)
     scene = Path(found.scene).stem
     files = _write(found, folder or Path("results") / f"chart-{found.system}-{scene}")
     interrupted = any(p.outcome == OutcomeKind.INTERRUPTED for p in found.points)

@@ -16,6 +16,7 @@ from herringbone.commands.output import check_writable, limits_told, say, show
 from herringbone.commands.run.options import SLOW, add_options
 from herringbone.core import EXIT_CODES, Outcome, OutcomeKind, ParameterError
 from herringbone.core.places.files import is_folder
+from herringbone.core.termination import is_terminating
 from herringbone.running.reporting.progress import Bar
 
 if TYPE_CHECKING:
@@ -158,6 +159,9 @@ class _Report:
         """Write all files."""
         self._bar.close()
         shown = self._output.shown
+        if is_terminating() and self._output.pictures:
+            self._output.pictures = False
+            say(f"herringbone: terminated: no pictures; 'herringbone plot {shown}' draws them")
         if result.outcome.kind is OutcomeKind.INTERRUPTED:
             say(
                 f"{_ended(result.outcome)}, and are being written to {shown}; Ctrl-C again ends at "

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
@@ -90,6 +90,25 @@ def foreign_fmu_policy(
         _policy.reset(token)
         for cell in (cell for cells in (found.idle or {}).values() for cell in cells):
             cell.close()
+
+
+@contextmanager
+def foreign_fmus_housed(
+    in_process: bool | None, deadline: float | None
+) -> Iterator[Sequence[Remark]]:
+    """As `foreign_fmu_policy`, with remarks that are to be told; a context around tells its own.
+
+    Args:
+        in_process, deadline: see `foreign_fmu_policy`.
+
+    Raises:
+        ParameterError: the deadline is not positive.
+    """
+    if _policy.get() is not None and in_process is None and deadline is None:
+        yield ()
+        return
+    with foreign_fmu_policy(in_process=in_process, deadline=deadline) as found:
+        yield found.remarks
 
 
 @contextmanager

@@ -10,7 +10,7 @@ from herringbone.core.places.files import write_whole
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import System
-from herringbone.fmi.native import build_native_fmus
+from herringbone.fmi.native import PLATFORMS, build_native_fmus
 from herringbone.fmi.native.started import build_started_fmu
 from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.exporting.carried_files import carried_files, refuse_files, without_files
@@ -19,6 +19,8 @@ from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
 from herringbone.scenes import Scene
 
+ALL = "all"
+"""In place of the names of all platforms."""
 _log = logging.getLogger(__name__)
 
 
@@ -79,6 +81,17 @@ def build_fmus(
         raise ResourceError(
             f"cannot write to {folder}: {error.strerror}; choose another folder"
         ) from error
+
+
+def chosen_platforms(names: Sequence[str]) -> list[str]:
+    """Names of platforms that are asked for; all of them for "all" alone."""
+    return list(PLATFORMS) if list(names) == [ALL] else list(names)
+
+
+def untested(platforms: Sequence[str]) -> list[str]:
+    """A line on platforms whose binaries were built, but cannot be run here, if there are any."""
+    names = [name for name in platforms if not PLATFORMS[name].tested]
+    return [f"built, not run: {', '.join(names)}"] if names else []
 
 
 def ready(

@@ -13,6 +13,7 @@ from herringbone.running.foreign.speeding_up import speeding_up
 from herringbone.running.foreign.surrogates import opened_surrogates, without_missing
 from herringbone.running.known_limits import KnownLimits
 from herringbone.running.prepared import Wishes, prepared
+from herringbone.scenes import Scene
 
 
 class Predictable(NamedTuple):
@@ -37,7 +38,10 @@ class Predictable(NamedTuple):
 
 @contextmanager
 def predictable(
-    system: str | Path, scene: str | None, wishes: Wishes, tell: Callable[[str], None]
+    system: str | Path | System,
+    scene: str | Path | Scene | None,
+    wishes: Wishes,
+    tell: Callable[[str], None],
 ) -> Iterator[Predictable]:
     """A system that predictions can be made of, as long as the context lasts.
 

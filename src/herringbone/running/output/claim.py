@@ -9,6 +9,7 @@ from pathlib import Path
 from herringbone.core import HerringboneError, ResourceError
 from herringbone.core.errors import reason
 from herringbone.core.places.files import is_file
+from herringbone.core.wording import option
 from herringbone.result.folder.names import SUMMARY, State
 from herringbone.result.folder.run_file import read_run_file
 
@@ -71,27 +72,24 @@ def _taken(folder: Path, claim: Claim) -> _Taken | None:
     Raises:
         HerringboneError: another process writes into it.
     """
+    anew = option("overwrite", True)
     try:
         found = read_run_file(folder)
     except ResourceError as error:
-        return _Taken(
-            f"holds a run that cannot be read ({error}); use another folder, or --overwrite"
-        )
+        return _Taken(f"holds a run that cannot be read ({error}); use another folder, or {anew}")
     if found is None:
         old = is_file(folder / SUMMARY)
-        what = "holds results of an older version; choose another folder with -o, or --overwrite"
+        what = f"holds results of an older version; choose another folder, or {anew}"
         return _Taken(what) if old else None
     if found.key != claim.key:
         names = [n for n, d in claim.settings.items() if found.settings.get(n) != d]
         return _Taken(
-            f"holds a run of other settings ({', '.join(names)}); choose another folder with -o, "
-            "or overwrite it with --overwrite"
+            f"holds a run of other settings ({', '.join(names)}); choose another folder, or {anew}"
         )
     if found.state is State.RUNNING:
         FolderLock(folder).release()  # one that still writes is not cut off
-        return _Taken(
-            "holds this run, but cut off; go on with --resume, or begin anew with --overwrite", True
-        )
+        resume = f"go on with 'herringbone run --resume {folder}', or " if found.asked else ""
+        return _Taken(f"holds this run, but cut off; {resume}begin anew with {anew}", own=True)
     return None
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import herringbone as hb
 from herringbone.analysis.accuracy.step_ladder import FEWEST_STEPS, charted_algorithms, ladder
 from herringbone.analysis.accuracy.variant_labels import variant_labels
 from herringbone.analysis.accuracy.work_precision import Point, WorkPrecision
@@ -15,7 +16,7 @@ from herringbone.commands.chart.report import table
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms import ALGORITHMS, parse_algorithm
 from herringbone.plotting.work_precision import chart_picture, write_chart
-from herringbone.running.charting.measure import measure, said_once
+from herringbone.running.charting.chart import said_once
 
 CHEAP, GOOD = "jacobi:order=1,schedule=bodies_first", "li:degree=3,iterations=1"
 KEYS = {
@@ -138,7 +139,7 @@ def test_ladder_leaves_out_short_runs():
 
 def test_automatic_choice_is_no_algorithm_to_compare():
     with pytest.raises(ParameterError, match="auto is a choice"):
-        measure("test_rig", algorithms=["auto"])
+        hb.chart("test_rig", algorithms=["auto"])
 
 
 def test_every_algorithm_is_charted():

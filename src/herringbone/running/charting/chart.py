@@ -1,6 +1,7 @@
 """What a speed-accuracy chart shows: runs of algorithms up a ladder of steps, and their errors."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,8 +19,11 @@ from herringbone.analysis.accuracy.work_precision import Point, WorkPrecision
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.given import check_called
 from herringbone.core.part import Part
+from herringbone.core.wording import option
 from herringbone.cosim.algorithms import AUTO, LI, Algorithm, parse_algorithm, refuse_adaptive
+from herringbone.cosim.cell.policy import foreign_fmus_housed
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
@@ -31,6 +35,7 @@ from herringbone.running.loading import instances, open_parts
 from herringbone.running.operating.commanded import operated
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
+from herringbone.scenes import Scene
 
 _SET_UP = (
     "fused: each run makes the matrices of its steps first, some milliseconds of CPU time that "
@@ -38,63 +43,77 @@ _SET_UP = (
 )
 
 
-def measure(
-    system: str | Path,
+def chart(
+    system: str | Path | System,
     *,
-    scene: str | None = None,
+    scene: str | Path | Scene | None = None,
     speed: float | None = None,
     torque: float | None = None,
-    algorithms: Sequence[str] = (),
+    algorithms: Sequence[str | Algorithm] = (),
     steps: Sequence[float] = STEPS,
     tolerances: Sequence[float] = (),
     t_end: float | None = None,
-    values: Mapping[str, float | str] | None = None,
+    values: Mapping[str, float | str | Path] | None = None,
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: Named | None = None,
     replace_parts: Mapping[str, str | Path] | None = None,
     fmu: str = AUTO_FMU,
     fuse: bool = False,
-    progress: Progress = lambda algorithm, step: None,
+    in_process: bool | None = None,
+    call_deadline: float | None = None,
+    progress: bool | Progress = False,
 ) -> WorkPrecision:
     """Run algorithms up a ladder of steps, against the monolithic twin.
 
     Args:
-        system: name of a shipped system, folder with system.toml, or .ssp file.
+        system: name of a shipped system, folder with system.toml, .ssp file, or a System.
         scene: name or file of a scene; the system's "loaded" if not given.
         speed, torque: set points at the pinion [rad/s], [N m], as in `herringbone.run`.
-        algorithms: such as "jacobi:order=2"; all, in the variants worth showing, if none is given.
+        algorithms: such as "jacobi:order=2" or `Jacobi(order=2)`; all, in the variants worth
+            showing, if none is given.
         steps: communication step sizes [s].
         tolerances: relative errors for which li adapts its step, one more curve; none if not given.
         t_end: duration of each run [s]; the scene's if not given.
         values, gear, housing, replace_parts: as in `herringbone.run`.
         fmu: kind of the parts' FMUs, as in `herringbone.run`.
         fuse: curves of the fused system, too; its steps are the base steps of the core.
-        progress: called before each run with the algorithm and the step [s].
+        in_process, call_deadline: of foreign FMUs, as in `herringbone.run`.
+        progress: True for a count of runs; or called before each with algorithm and step [s].
+
+    Returns:
+        Errors and costs of all runs; `plot()` draws them.
 
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    chosen = _curves(algorithms, tolerances)
-    wishes = Wishes(
-        t_end=t_end, values=values or {}, gear=gear, housing=housing,
-        replace_parts=replace_parts or {},
-    )  # fmt: skip
-    structure, options, notes = prepared(
-        system, scene, operated(system, scene, wishes, speed, torque)
-    )
-    fmu, why = choose_kind(fmu)
-    grids = ladder(steps, options.t_end)
-    if structure.foreign_parts and tolerances:
-        raise ParameterError("tolerances: with foreign FMUs a curve is drawn over fixed steps only")
-    if fuse:
-        refuse_strangers(structure)
-    shown = _Shown(structure, chosen, grids, progress)
-    opened = _Opened(structure, fmu, grids[0].step)
-    found = (
-        _beside_finer(shown, opened)
-        if structure.foreign_parts
-        else _beside_twin(shown, opened, fuse=fuse)
-    )
+    check_called("progress", progress)
+    with (
+        foreign_fmus_housed(in_process, call_deadline) as remarks,
+        _counted(progress) as counted,
+    ):
+        wishes = Wishes(
+            t_end=t_end, values=values or {}, gear=gear, housing=housing,
+            replace_parts=replace_parts or {},
+        )  # fmt: skip
+        curves = _curves(algorithms, tolerances)
+        wishes = operated(system, scene, wishes, speed, torque)
+        structure, options, notes = prepared(system, scene, wishes)
+        fmu, why = choose_kind(fmu)
+        grids = ladder(steps, options.t_end)
+        if structure.foreign_parts and tolerances:
+            raise ParameterError(
+                "tolerances: with foreign FMUs a curve is drawn over fixed steps only"
+            )
+        if fuse:
+            refuse_strangers(structure)
+        shown = _Shown(structure, curves, grids, counted)
+        opened = _Opened(structure, fmu, grids[0].step)
+        found = (
+            _beside_finer(shown, opened)
+            if structure.foreign_parts
+            else _beside_twin(shown, opened, fuse=fuse)
+        )
+        told = list(map(str, remarks))
     return WorkPrecision(
         structure.name,
         options.name,
@@ -103,9 +122,26 @@ def measure(
         found.modes,
         found.micro_step,
         tuple(point for point, _ in found.points),
-        tuple(dict.fromkeys([*notes, *why, *found.notes, *said_once(found.points)])),
+        tuple(dict.fromkeys([*notes, *why, *found.notes, *said_once(found.points), *told])),
         bool(structure.foreign_parts),
     )
+
+
+@contextmanager
+def _counted(progress: bool | Progress) -> Iterator[Progress]:
+    """What is called before each run: shows the count of runs for True, nothing for False."""
+    if not isinstance(progress, bool):
+        yield progress
+        return
+    from tqdm import tqdm  # noqa: PLC0415 (many callers show none)
+
+    with tqdm(unit=" runs", disable=not progress, bar_format="{n} runs [{elapsed}] {desc}") as bar:
+
+        def show(algorithm: str, step: float) -> None:
+            bar.set_description_str(f"{algorithm} at {step * 1e6:.4g} us", refresh=False)
+            bar.update()
+
+        yield show
 
 
 class _Shown(NamedTuple):
@@ -155,16 +191,17 @@ def said_once(found: Sequence[tuple[Point, Sequence[str]]]) -> Iterator[str]:
         yield from [text] if len(different) == len(algorithms) else different
 
 
-def _curves(algorithms: Sequence[str], tolerances: Sequence[float]) -> list[Algorithm]:
+def _curves(algorithms: Sequence[str | Algorithm], tolerances: Sequence[float]) -> list[Algorithm]:
     """One algorithm for each curve: those named, or all worth showing, and li by tolerance."""
     if AUTO in algorithms:
         raise ParameterError(
             f"{AUTO} is a choice among the algorithms that a chart compares; leave it out"
         )
-    chosen = list(dict.fromkeys(map(parse_algorithm, algorithms))) or list(charted_algorithms())
+    named = dict.fromkeys(parse_algorithm(str(algorithm)) for algorithm in algorithms)
+    chosen = list(named) or list(charted_algorithms())
     if 0.0 in tolerances:
         raise ParameterError("tolerances: 0 keeps the step; name li among the algorithms for that")
-    refuse_adaptive(chosen, "a curve is drawn over steps or over --tolerances")
+    refuse_adaptive(chosen, f"a curve is drawn over steps or over {option('tolerances')}")
     return [*chosen, *(LI(tolerance=tolerance) for tolerance in sorted(tolerances))]
 
 

@@ -1,0 +1,49 @@
+"""How messages call what a caller can give: an option of the command line, or an argument.
+
+Who types commands reads `--record-step 1e-4`, who writes scripts `record_step=1e-4`.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+_as_options = [False]
+
+
+@contextmanager
+def words_of_commands() -> Iterator[None]:
+    """Context of a command: its messages name options."""
+    before, _as_options[0] = _as_options[0], True
+    try:
+        yield
+    finally:
+        _as_options[0] = before
+
+
+def option(name: str, value: float | str | bool | None = None) -> str:
+    """An option, such as `--record-step 1e-4`, or the argument, `record_step=1e-4`.
+
+    Args:
+        name: of the argument.
+        value: to be given; True of a switch; None: the name alone.
+    """
+    if not _as_options[0]:
+        shown = f'"{value}"' if isinstance(value, str) else _shown(value)
+        return name if value is None else f"{name}={shown}"
+    dashed = f"--{name.replace('_', '-')}"
+    return dashed if value is None or value is True else f"{dashed} {_shown(value)}"
+
+
+def setting(path: str, value: float | str) -> str:
+    """A value of a variable: `--set PATH=VALUE`, or `values={"PATH": VALUE}`.
+
+    Args:
+        path: `instance.variable`.
+        value: a number, or what stands for one, such as "...".
+    """
+    if _as_options[0]:
+        return f"--set {path}={_shown(value)}"
+    return f'values={{"{path}": {_shown(value)}}}'
+
+
+def _shown(value: float | str | bool | None) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,140 @@
+"""What is known of a system's coupling before a run, by name."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+from herringbone.analysis.stability import limits
+from herringbone.analysis.stability.limits import Stability, default_algorithms
+from herringbone.analysis.stability.steps.step_verdict import StepVerdict, step_verdicts
+from herringbone.analysis.stability.surrogates.operating_point import linear_at
+from herringbone.core.one_thread import one_blas_thread
+from herringbone.cosim.algorithms import Algorithm, parse_algorithm, refuse_adaptive
+from herringbone.cosim.cell.policy import foreign_fmus_housed
+from herringbone.cosim.structure.system import System
+from herringbone.running.foreign.predictable import Predictable, predictable
+from herringbone.running.operating.commanded import operated
+from herringbone.running.operating.one_step import check_asked
+from herringbone.running.pairs.gears import Gear
+from herringbone.running.prepared import Named, Wishes
+from herringbone.scenes import Scene, Start
+
+Progress = Callable[[str], None]
+"""Called with the name of an algorithm, at every matrix of it."""
+Tell = Callable[[str], None]
+"""Called with lines on how an answer came about."""
+
+
+def stability(
+    system: str | Path | System,
+    *,
+    scene: str | Path | Scene | None = None,
+    speed: float | None = None,
+    torque: float | None = None,
+    algorithms: Sequence[str | Algorithm] = (),
+    step: float | None = None,
+    tolerance: float = 1e-3,
+    simulate: bool = False,
+    values: Mapping[str, float | str | Path] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
+    replace_parts: Mapping[str, str | Path] | None = None,
+    in_process: bool | None = None,
+    call_deadline: float | None = None,
+    progress: Progress = lambda algorithm: None,
+) -> Stability | tuple[StepVerdict, ...]:
+    """Stable steps of coupling algorithms, bonds, and a recommended algorithm and step.
+
+    They are predicted from the linear parts at the start of the scene; see `docs/coupling.md`.
+
+    Args:
+        system: name of a shipped system, folder with system.toml, .ssp file, or a System.
+        scene: name or file of a scene; the system's "loaded" if not given.
+        speed, torque: set points at the pinion [rad/s], [N m], as in `herringbone.run`.
+        algorithms: such as "jacobi:order=2" or `Jacobi(order=2)`; all if none is given.
+        step: only say what happens at this step [s], and why.
+        tolerance: relative error for which a step is recommended.
+        simulate: also find the non-linear system's limits, by runs.
+        values, gear, housing, replace_parts: as in `herringbone.run`.
+        in_process, call_deadline: of foreign FMUs, as in `herringbone.run`.
+        progress: see `Progress`.
+
+    Returns:
+        What is known, which `str` tells as the command does; with `step` a verdict of each
+        algorithm, with `stable`, `growth` and `lines()`.
+
+    Raises:
+        HerringboneError: something about the input is wrong, or nothing can be predicted.
+    """
+    check_asked(step, simulate=simulate)
+    chosen = fixed_steps(algorithms)
+    wishes = Wishes(
+        values=values or {}, gear=gear, housing=housing, replace_parts=replace_parts or {}
+    )
+    told: list[str] = []
+    with (
+        one_blas_thread(),
+        foreign_fmus_housed(in_process, call_deadline) as remarks,
+        known_before(system, scene, speed, torque, wishes, told.append) as found,
+    ):
+        if step is not None:
+            return step_verdicts(
+                found.system, chosen or default_algorithms(), step, progress, found.strangers
+            )
+        known = stability_before(found, chosen, tolerance, simulate, progress)
+        return replace(known, notes=(*told, *known.notes, *map(str, remarks)))
+
+
+def fixed_steps(algorithms: Sequence[str | Algorithm]) -> list[Algorithm]:
+    """The algorithms that are named; raises ParameterError if one adapts its step."""
+    found = [parse_algorithm(str(algorithm)) for algorithm in algorithms]
+    refuse_adaptive(found, "stability is predicted for fixed steps")
+    return found
+
+
+@contextmanager
+def known_before(
+    system: str | Path | System,
+    scene: str | Path | Scene | None,
+    speed: float | None,
+    torque: float | None,
+    wishes: Wishes,
+    tell: Tell,
+) -> Iterator[Predictable]:
+    """A system that stable steps can be predicted of, under load, as long as the context lasts.
+
+    Args:
+        system, scene, speed, torque: see `stability`.
+        wishes: over these.
+        tell: see `Tell`.
+
+    Raises:
+        HerringboneError: see `stability`.
+    """
+    wishes = replace(wishes, start=Start.EQUILIBRIUM, start_offset={})
+    wishes = operated(system, scene, wishes, speed, torque)
+    with predictable(system, scene, wishes, tell) as found:
+        yield found
+
+
+def stability_before(
+    of: Predictable,
+    algorithms: Sequence[Algorithm],
+    tolerance: float,
+    simulate: bool,
+    progress: Progress,
+) -> Stability:
+    """What is known of a predictable system; arguments as of `stability`."""
+    found = limits.stability(
+        of.system,
+        of.scene,
+        algorithms,
+        tolerance=tolerance,
+        simulate=simulate,
+        progress=progress,
+        strangers=of.strangers,
+        started=of.started,
+        remember=of.known,
+    )
+    return replace(found, notes=(*of.missing, *linear_at(of.strangers), *found.notes))
