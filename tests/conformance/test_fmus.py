@@ -275,13 +275,27 @@ def test_all_components_twice_in_one_process_are_not_confused(started):
         assert (np.abs(np.array(first) - wanted[row, 1:]) <= 1e-9 * scale).all()
 
 
-def test_no_value_before_initialisation(fmus):
+@pytest.mark.parametrize("name", NAMES)
+def test_start_values_before_initialisation(name, fmus):
+    """Those of the declaration and those that were set; reading them spoils nothing."""
+    declaration = COMPONENTS[name].declaration
+    given = (*declaration.inputs, *declaration.parameters)
+    with Host("part", fmus[name]) as host:
+        assert host.values(*(v.name for v in given)) == [v.start for v in given]
+        host.set_values({given[-1].name: given[-1].start})
+        host.initialise()
+        assert host.messages() == []
+
+
+def test_no_output_before_initialisation(fmus):
     """Native FMUs say so at once, Python FMUs, whose host cannot be told, on initialisation."""
-    refused = pytest.raises(FmuError, match="part: getReal before initialisation")
+    refused = pytest.raises(
+        FmuError, match=r"part\.flange\.w: it has no value before initialisation"
+    )
     with Host("part", fmus["drive_motor"]) as host, refused:
         read_early(host)
 
 
 def read_early(host):
-    host.values("inertia")
+    host.values("flange.w")
     host.initialise()

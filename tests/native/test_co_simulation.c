@@ -121,8 +121,14 @@ static void test_state_machine(void) {
     fmi2Component c = make("r");
     fmi2String text;
     fmi2ValueReference reals[] = {INERTIA}, texts[] = {INERTIAS};
-    REFUSED(fmi2GetReal(c, reals, 1, (double[1]){0}), "r: getReal before initialisation");
-    REFUSED(fmi2GetString(c, texts, 1, &text), "r: getString before initialisation");
+    double start = 0.0;
+    OK(fmi2GetReal(c, reals, 1, &start));
+    CHECK(start == 2.0);
+    OK(fmi2GetString(c, texts, 1, &text));
+    CHECK(strcmp(text, "inertias.csv") == 0);
+    reals[0] = W_OUT;
+    REFUSED(fmi2GetReal(c, reals, 1, &start), "it has no value before initialisation");
+    CHECK(isnan(start));
     REFUSED(fmi2DoStep(c, 0, 1e-3, 1), "doStep before the end of initialisation");
     REFUSED(fmi2ExitInitializationMode(c), "exitInitializationMode before initialisation");
     REFUSED(fmi2Terminate(c), "terminate before initialisation");

@@ -105,8 +105,12 @@ static void test_texts_and_state_machine(void) {
     REFUSED(fmi3SetString(c, &inertias, 1, &name, 2), "2 values for 1 Strings");
     OK(fmi3SetString(c, &inertias, 1, &name, 1));
     name = NULL;
-    REFUSED(fmi3GetString(c, &inertias, 1, &name, 1), "getString before initialisation");
-    REFUSED(fmi3GetFloat64(c, &(fmi3ValueReference){INERTIA}, 1, &(double){0}, 1), "getReal before");
+    OK(fmi3GetString(c, &inertias, 1, &name, 1));
+    CHECK(strcmp(name, "heavy.csv") == 0);
+    double start = 0.0;
+    OK(fmi3GetFloat64(c, &(fmi3ValueReference){INERTIA}, 1, &start, 1));
+    CHECK(start == 2.0);
+    REFUSED(fmi3GetFloat64(c, &(fmi3ValueReference){W_OUT}, 1, &start, 1), "no value before");
     REFUSED(fmi3EnterInitializationMode(c, false, 0, NAN, false, 0), "start time nan s");
     OK(fmi3EnterInitializationMode(c, false, 0, 1.0, false, 0));
     REFUSED(fmi3EnterInitializationMode(c, false, 0, 1.0, false, 0), "in initialisation mode");

@@ -155,16 +155,20 @@ def replacements(options: argparse.Namespace) -> dict[str, str]:
     return assignments(options.replace, "--replace", _REPLACE)
 
 
-def start_values(items: Sequence[str]) -> dict[str, float | str]:
+def start_values(items: Sequence[str], form: str = _SET) -> dict[str, float | str]:
     """Numbers where they read as numbers, text otherwise, by `instance.variable`.
 
     Whole numbers that no double holds stay as they are; quotes make a number a text.
+
+    Args:
+        items: as given.
+        form: what an item looks like.
 
     Raises:
         ParameterError: an item is no assignment.
     """
     found: dict[str, float | str] = {}
-    for name, text in assignments(items, "--set", _SET).items():
+    for name, text in assignments(items, "--set", form).items():
         try:
             found[name] = _number(text)
         except ValueError:

@@ -116,14 +116,21 @@ def _of_step(
 ) -> Told:
     """What happens at one step [s], by algorithm."""
     from herringbone.analysis.stability.limits import default_algorithms  # noqa: PLC0415
-    from herringbone.analysis.stability.steps.step_verdict import step_verdicts  # noqa: PLC0415
+    from herringbone.analysis.stability.steps.step_verdict import StepVerdict, step_verdicts  # noqa: PLC0415
     from herringbone.analysis.stability.surrogates.operating_point import (  # noqa: PLC0415
         linear_at,
     )
 
-    chosen = algorithms or default_algorithms()
-    verdicts = step_verdicts(of.system, chosen, step, show, of.strangers)
-    lines = [line for verdict in verdicts for line in verdict.lines()]
+    verdicts: list[StepVerdict] = []
+    lines: list[str] = []
+    for algorithm in algorithms or default_algorithms():
+        try:
+            verdicts += step_verdicts(of.system, [algorithm], step, show, of.strangers)
+            lines += verdicts[-1].lines()
+        except ParameterError as error:
+            if algorithms:
+                raise
+            lines.append(f"{algorithm}: {error}")
     lines += linear_at(of.strangers)
     return Told("\n".join(lines), [{**asdict(v), "stable": v.stable} for v in verdicts])
 

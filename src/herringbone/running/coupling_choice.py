@@ -1,6 +1,7 @@
 """How a prepared system is coupled: what is asked, and what is chosen where nothing is."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.foreign.interfaces import unfed
 from herringbone.running.foreign.linear_start import turned_back, under_load
 from herringbone.running.foreign.speeding_up import speeding_up
+from herringbone.running.foreign.started import proposed_step
 from herringbone.running.foreign.surrogates import surrogates_of
 from herringbone.running.loading import instances
 from herringbone.running.remembered_answers import bond_of, stability_warning
@@ -123,9 +125,22 @@ def way_of(
         lines.append(
             f"auto: steps of {step:.3g} s, because no bond is faster than {bond:.3g} rad/s"
         )
+    lines += _other_lengths(system, parts, step)
     if asked.warn:
         lines += _stability_notes(system, parts, algorithm, step, scene.t_end, asked)
     return Way(parts, algorithm, step, wanted, bond, lines)
+
+
+def _other_lengths(system: System, parts: Sequence[Part], step: float) -> Iterator[str]:
+    """A line for each foreign part that takes steps of one length only and proposes another one."""
+    for part in parts:
+        fmu = next((p.fmu for p in system.parts if p.name == part.name and p.foreign), None)
+        proposed = proposed_step(fmu) if fmu and part.one_step else None
+        if proposed and not math.isclose(proposed, step):
+            yield (
+                f"{part.name} takes steps of one length only, and proposes {proposed:g} s: if it "
+                f"refuses {step:g} s, use --step {proposed:g}"
+            )
 
 
 def _stability_notes(

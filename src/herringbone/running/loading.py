@@ -19,7 +19,7 @@ from herringbone.cosim.fmu.file import require_file
 from herringbone.cosim.fmu.opening import many_of, open_fmu, runs_again
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.starting.approached_part import approached
-from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.cosim.structure.system import PartSpec, System, Values
 from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.cosim.units import in_si_units
 from herringbone.fmi.kind import choose_kind
@@ -134,7 +134,7 @@ def _compliance(spec: PartSpec) -> float:
 
     def opened() -> Part:
         part = _open_part(replace(spec, fmu=None), {}, shared=False)
-        _set_values(part, spec)
+        set_values(part, spec.values)
         return part
 
     return compliance_of(opened)
@@ -159,7 +159,7 @@ def open_parts(system: System, fmu: str) -> list[Part]:
     try:
         for spec in system.parts:
             parts.append(_open_part(spec, files, shared=kind == "native"))
-            _set_values(parts[-1], spec)
+            set_values(parts[-1], spec.values)
             if spec.foreign and system.connections:
                 parts[-1] = in_si_units(parts[-1])
             parts[-1] = approached(parts[-1], spec.approach)
@@ -181,7 +181,7 @@ def instances(spec: PartSpec) -> Iterator[Callable[[], Part]]:
         def with_values() -> Part:
             part = make()
             try:
-                _set_values(part, spec)
+                set_values(part, spec.values)
             except HerringboneError:
                 part.close()
                 raise
@@ -195,14 +195,14 @@ def in_one_run(system: System) -> list[str]:
     return [p.name for p in system.parts if p.fmu and not runs_again(p.name, p.fmu)]
 
 
-def _set_values(part: Part, spec: PartSpec) -> None:
-    """Set start values; those first that decide how large arrays are."""
+def set_values(part: Part, values: Values) -> None:
+    """Set start values; those first that decide how large arrays are; raises HerringboneError."""
 
     def later(name: str) -> bool:
         return name not in part.variables or part.variables[name].causality != STRUCTURE
 
-    for name in sorted(spec.values, key=later):
-        part.set(name, spec.values[name])
+    for name in sorted(values, key=later):
+        part.set(name, values[name])
 
 
 def _with_rates(part: Part, name: str) -> dict[str, PartVariable]:

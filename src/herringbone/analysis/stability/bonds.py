@@ -15,7 +15,7 @@ subsystems, see the algorithms' docstrings.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,19 +85,14 @@ def bond_table(network: Network, members: Sequence[Member]) -> tuple[Bond, ...]:
     """All bonds between components of a system at their present operating point."""
     bonds = []
     for direction in bond_directions(network, members):
-        by_body: dict[int, list[tuple[str, float]]] = {}
-        for c, value in direction.forces:
-            by_body.setdefault(c.target, []).append((c.input, value))
-        inverse = {
-            p: _response(network, members, p, forces, forces) for p, forces in by_body.items()
-        }
+        bodies = dict.fromkeys(c.target for c, _ in direction.forces)
+        inverse = {p: _response(network, members, p, direction, direction) for p in bodies}
         masses = {p: 1.0 / x for p, x in inverse.items() if x > 0.0}
         w = math.sqrt(direction.stiffness * sum(inverse.values()))
         zeta = direction.damping * w / (2.0 * direction.stiffness)
-        bodies = tuple(members[p].name for p in masses)
-        values = tuple(masses.values())
+        names, values = tuple(members[p].name for p in masses), tuple(masses.values())
         bonds.append(
-            Bond(direction.name, bodies, values, direction.stiffness, direction.damping, w, zeta)
+            Bond(direction.name, names, values, direction.stiffness, direction.damping, w, zeta)
         )
     return tuple(bonds)
 
@@ -109,11 +104,8 @@ def highest_frequency(network: Network, members: Sequence[Member]) -> float:
     for i, one in enumerate(directions):
         for j, other in enumerate(directions):
             for p in network.bodies:
-                ours, theirs = (
-                    [(c.input, x) for c, x in d.forces if c.target == p] for d in (one, other)
-                )
-                if ours and theirs:
-                    response = _response(network, members, p, ours, theirs)
+                if all(any(c.target == p for c, _ in d.forces) for d in (one, other)):
+                    response = _response(network, members, p, one, other)
                     coupling[i, j] += math.sqrt(one.stiffness * other.stiffness) * response
     if not directions:
         return 0.0
@@ -195,19 +187,16 @@ def _slopes(element: Instance, forces: Sequence[Connection], kind: int) -> np.nd
 
 
 def _response(
-    network: Network,
-    members: Sequence[Member],
-    p: int,
-    forces: Sequence[tuple[str, float]],
-    along: Sequence[tuple[str, float]],
+    network: Network, members: Sequence[Member], p: int, forced: Direction, along: Direction
 ) -> float:
-    """Acceleration of a body along some ports per unit force along others [1/kg or 1/(kg.m2)]."""
+    """Acceleration of a body along a bond per unit force along another [1/kg or 1/(kg.m2)]."""
+    forces = [(c.input, x) for c, x in forced.forces if c.target == p]
+    velocities = list(_velocities(network, p, along))
     instance = members[p]
     if isinstance(instance, StandIn):
-        return _surrogate_response(instance, forces, along)
+        return _surrogate_response(instance, forces, velocities)
     block, kernels = instance.block, instance.component.kernels
     declaration = instance.component.declaration
-    read = {c.output for c in network.connections if c.source == p}
     kept = block.copy()
     count = declaration.state_count
     dx = [np.zeros(count), np.zeros(count)]
@@ -216,19 +205,30 @@ def _response(
             block[declaration.index[name]] += value
         kernels.rhs(block, 0.0, dx[k])
     block[:] = kept
-    velocities = [(motion_at(name)[1], x) for name, x in along]
-    rows = [declaration.index[name] for name, _ in velocities if name in read]
+    rows = [declaration.index[name] for name, _ in velocities]
     kernels.out(block, 0.0)
     before = block[rows].copy()
     block[:count] += dx[1] - dx[0]
     kernels.out(block, 0.0)
     after = block[rows].copy()
     block[:] = kept
-    return float(np.dot([x for name, x in velocities if name in read], after - before))
+    return float(np.dot([x for _, x in velocities], after - before))
+
+
+def _velocities(network: Network, p: int, along: Direction) -> Iterator[tuple[str, float]]:
+    """Outputs of a body that tell the element how fast it moves along a bond, and their shares.
+
+    By connection: a foreign body has names of its own.
+    """
+    for force, x in along.forces:
+        taken = motion_at(force.output)[1]
+        for c in network.connections:
+            if (c.source, c.target, c.input) == (p, force.source, taken) and force.target == p:
+                yield c.output, x
 
 
 def _surrogate_response(
-    body: StandIn, forces: Sequence[tuple[str, float]], along: Sequence[tuple[str, float]]
+    body: StandIn, forces: Sequence[tuple[str, float]], velocities: Sequence[tuple[str, float]]
 ) -> float:
     """As `_response`, of a foreign body: dv/dt = c b f where v = c x and dx/dt = a x + b f."""
     surrogate = body.surrogate
@@ -236,6 +236,4 @@ def _surrogate_response(
     for name, x in forces:
         pushed[surrogate.inputs.index(name)] += x
     rates = surrogate.response(pushed)
-    velocities = [(motion_at(name)[1], x) for name, x in along]
-    read = [(surrogate.outputs.index(v), x) for v, x in velocities if v in surrogate.outputs]
-    return float(sum(x * rates[row] for row, x in read))
+    return float(sum(x * rates[surrogate.outputs.index(name)] for name, x in velocities))

@@ -11,7 +11,7 @@ from tqdm import tqdm
 from herringbone.analysis.finding import Finding, Report, Verdict, not_tested
 from herringbone.analysis.flange.contract import check_flanges
 from herringbone.analysis.housing.contract import STEP, check_housing, usual_compliance
-from herringbone.commands.options import assignments
+from herringbone.commands.options import start_values
 from herringbone.commands.output import show
 from herringbone.core.declaring.roles import Role
 from herringbone.cosim.fmu.opening import many_of
@@ -57,7 +57,7 @@ def _tested(options: argparse.Namespace, progress: Report) -> tuple[list[Finding
     """Findings, and the step of the trials [s]."""
     role, fmu, longest = ROLES[options.role], options.fmu, options.longest_trial
     with many_of(fmu.stem, fmu) as new:
-        values = assignments(options.set, "--set", "VARIABLE=VALUE")
+        values = start_values(options.set, "VARIABLE=VALUE")
         make = started(new, values)
         if role is Role.HOUSING:
             step = options.step or STEP

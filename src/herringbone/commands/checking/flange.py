@@ -7,7 +7,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from herringbone.commands.answers import Told
-from herringbone.commands.options import assignments
+from herringbone.commands.options import start_values
 from herringbone.core import ParameterError
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def flange_limits(options: argparse.Namespace) -> Told:
     from herringbone.running.foreign.hosted_flange import hosted_flange  # noqa: PLC0415
 
     host = Host(options.inertia, options.stiffness or 0.0, options.damping or 0.0)
-    values = assignments(options.set, "--set", "VARIABLE=VALUE")
+    values = start_values(options.set, "VARIABLE=VALUE")
     found = hosted_flange(Path(options.system), options.flange or "", host, values)
     return Told(_text(found), _summary(found))
 

@@ -22,9 +22,13 @@ _MOVES = {
     InputRule.START: "runs on inside a step, with",
     InputRule.END: "runs up to its value inside a step, with",
 }
+_RESTING = 8
+"""Steps in which outputs show whether they change with time alone."""
 _SHORT = 1.001
 _LOUDER = 5
 """How often a change that nothing answers is made 16 times larger."""
+_SHOWN = 3
+"""Inputs that nothing answers, by name in a line."""
 _TINY = 1e-3
 """The first step that shows whether outputs are valid before it, over the step."""
 
@@ -79,12 +83,12 @@ def _by_trials(
     """Signature of a part that repeats and changes in every step; raises Refused."""
     pulse, changes = _heard(lab, changes)
     feedthrough, slopes = feedthrough_of(lab, changes, tick, found)
-    _doubt(feedthrough, pulse, found)
+    _doubt(lab, feedthrough, pulse, found)
     _compare_later(lab, feedthrough, changes, found)
     given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes))
     valid = _valid_at_start(lab, tick)
     rates = rates_of(lab, variables, changes, feedthrough)
-    _note_answers(lab, pulse, found)
+    _note_answers(lab, variables, pulse, found)
     for number, rule in enumerate(given):
         if rule is not InputRule.MEAN:
             found.note(f"{lab.inputs[number]} {_MOVES[rule]} {lab.inputs[rate[number]]}")
@@ -154,12 +158,13 @@ def _rules(
     return tuple(given), tuple(rate)
 
 
-def _doubt(feedthrough: np.ndarray, pulse: Pulses, found: Findings) -> None:
+def _doubt(lab: Laboratory, feedthrough: np.ndarray, pulse: Pulses, found: Findings) -> None:
     """What is unknown after all: small answers of large outputs, and other inputs of bent ones."""
     for row in found.bent:
         feedthrough[row, pulse.delay[row] < 0] = np.nan
     seen = found.bent or np.nan_to_num(feedthrough).any()
-    if pulse.memory is Answer.NO and feedthrough.size and not seen:
+    moves = (pulse.delay >= 0).any() or np.ptp(lab.resting(lab.step, _RESTING), axis=0).any()
+    if pulse.memory is Answer.NO and feedthrough.size and moves and not seen:
         found.note("its outputs change, but too little against their size, or with time alone")
 
 
@@ -182,13 +187,26 @@ def _compare_later(
             )
 
 
-def _note_answers(lab: Laboratory, pulse: Pulses, found: Findings) -> None:
+def _note_answers(
+    lab: Laboratory, variables: Mapping[str, PartVariable], pulse: Pulses, found: Findings
+) -> None:
     """Lines on inputs that nothing answers, and on answers that come late."""
+    if not lab.outputs:
+        outputs = (v for v in variables.values() if v.causality == "output")
+        if other := next(outputs, None):
+            found.note(
+                f"trials tell nothing of its outputs: none is of double precision ({other.name} is "
+                f"a {other.type})"
+            )
+        return
+    deaf = [name for name, d in zip(lab.inputs, pulse.delay.T, strict=True) if (d < 0).all()]
+    if deaf:
+        more = f" and {len(deaf) - _SHOWN} more" if len(deaf) > _SHOWN else ""
+        names = ", ".join(deaf[:_SHOWN])
+        found.note(f"no output answers {names}{more} at the start values of the others")
     for number, name in enumerate(lab.inputs):
         late = pulse.delay[:, number]
-        if (late < 0).all():
-            found.note(f"no output answers {name} at the start values of the others")
-        elif late.max() > 0:
+        if late.max(initial=-1) > 0:
             found.note(f"{lab.outputs[int(late.argmax())]} answers {name} {late.max()} steps late")
 
 

@@ -116,10 +116,7 @@ class ComponentSlave(GuardedSlave):
             self._tables = hashlib.sha256(tables.tobytes()).hexdigest()[:16]
 
     def _refresh(self) -> None:
-        """Compute states and outputs in initialisation mode, before which there are none."""
-        if self._phase is _Phase.INSTANTIATED:
-            self._fail(f"{self.instance_name}: getReal before initialisation")
-            return
+        """Compute states and outputs in initialisation mode."""
         self._outdated = False
         self._read_resources()
         self._component.start(self._instance.block)
@@ -162,6 +159,8 @@ class ComponentSlave(GuardedSlave):
 
     def get_real(self, vrs: list[int]) -> list[float]:
         """Values of real variables, in their units."""
+        if self._phase is _Phase.INSTANTIATED:
+            return [self._start_value(vr) for vr in vrs]
         if self._outdated:
             self._attempt(self._refresh)
         values = self._values
@@ -174,6 +173,17 @@ class ComponentSlave(GuardedSlave):
             return [values[vr] for vr in vrs]
         self._unknown("Real", vrs, self._references)
         return [values[vr] if vr in self._references else math.nan for vr in vrs]
+
+    def _start_value(self, vr: int) -> float:
+        """Value before initialisation; NaN, and an error, of what is computed there."""
+        if vr not in self._references:
+            self._unknown("Real", [vr])
+        elif interface.settable(self._reals[vr], initialised=False):
+            return self._values[vr]
+        else:
+            name = self._reals[vr].name
+            self._fail(f"{self.instance_name}.{name}: it has no value before initialisation")
+        return math.nan
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
         """Set inputs, parameters and, until initialisation ends, states."""

@@ -1,7 +1,6 @@
 """Stable communication steps of an FMU whose flange a host couples to an inertia."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from zipfile import ZipFile
@@ -19,6 +18,7 @@ from herringbone.core.part import Part
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Kind, Laboratory
 from herringbone.cosim.signature.rotation import InputRule
+from herringbone.cosim.structure.system import Values
 from herringbone.fmi.packed.documentation import FLANGE_MODELS
 from herringbone.running.foreign.start_inputs import start_inputs
 from herringbone.running.foreign.started import own_step, started, started_content
@@ -62,16 +62,14 @@ class HostedFlange:
         return self.residual <= PROMISED
 
 
-def hosted_flange(
-    fmu: Path, flange: str, host: Host, values: Mapping[str, str] | None = None
-) -> HostedFlange:
+def hosted_flange(fmu: Path, flange: str, host: Host, values: Values | None = None) -> HostedFlange:
     """Limits of an FMU at a host.
 
     Args:
         fmu: file.
         flange: its port, or `tau=NAME,phi=NAME,w=NAME`, the angle may be missing; "": guessed.
         host: what it is coupled to.
-        values: texts of start values by variable.
+        values: start values by variable.
 
     Raises:
         FmuError: the FMU cannot be used, or trials tell nothing of it.

@@ -1,22 +1,24 @@
 """One FMU in trials of it alone: instances with start values set, and its step."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 
-from herringbone.core import HerringboneError, ParameterError
+from herringbone.core import HerringboneError
 from herringbone.core.part import Part
 from herringbone.cosim.fmu.file import read_fmu
+from herringbone.cosim.structure.system import Values
 from herringbone.running.content import digest_of_file, values_of
+from herringbone.running.loading import set_values
 
 _STEP = 1e-4
 
 
-def started(new: Callable[[], Part], values: Mapping[str, str]) -> Callable[[], Part]:
+def started(new: Callable[[], Part], values: Values) -> Callable[[], Part]:
     """Makes instances with start values set.
 
     Args:
         new: makes an instance.
-        values: texts by variable.
+        values: by variable, texts of arrays and of types that are no numbers.
 
     The function raises ParameterError where a value does not fit.
     """
@@ -24,26 +26,27 @@ def started(new: Callable[[], Part], values: Mapping[str, str]) -> Callable[[], 
     def make() -> Part:
         part = new()
         try:
-            for name, text in values.items():
-                number = part.variables[name].is_real if name in part.variables else False
-                part.set(name, float(text) if number else text)
-        except (ValueError, HerringboneError) as error:
+            set_values(part, values)
+        except HerringboneError:
             part.enter_initialization(0.0, 1.0)  # pythonfmu does not survive freeing what was not
             part.close()
-            if isinstance(error, ValueError):
-                raise ParameterError(f"{name} = {text}: it must be a number") from error
             raise
         return part
 
     return make
 
 
-def started_content(fmu: Path, values: Mapping[str, str]) -> tuple[str, ...]:
+def started_content(fmu: Path, values: Values) -> tuple[str, ...]:
     """What trials of such instances depend on, see `Laboratory`."""
     return fmu.stem, "own units", digest_of_file(fmu), *values_of(values)
 
 
 def own_step(fmu: Path) -> float:
     """Step that an FMU proposes for experiments [s], or that of trials."""
+    return proposed_step(fmu) or _STEP
+
+
+def proposed_step(fmu: Path) -> float | None:
+    """Step that an FMU proposes for experiments [s]; None if it proposes none."""
     experiment = read_fmu(fmu).defaultExperiment
-    return float(experiment.stepSize) if experiment and experiment.stepSize else _STEP
+    return float(experiment.stepSize) if experiment and experiment.stepSize else None

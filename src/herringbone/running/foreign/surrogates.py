@@ -27,7 +27,9 @@ from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.content import contents_of_trials
 from herringbone.running.foreign.foreign_parts import alike, understood
+from herringbone.running.foreign.other_types import held, rounded
 from herringbone.running.foreign.start_inputs import known_start_inputs
+from herringbone.running.foreign.started import own_step
 from herringbone.running.foreign.trials import found_signature
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.start import without_parts
@@ -48,10 +50,12 @@ class Surrogates:
     Attributes:
         strangers: by name.
         missing: why nothing stands for a part, by name.
+        held: lines on connections whose values stay those of the start.
     """
 
     strangers: dict[str, Stranger] = field(default_factory=dict)
     missing: dict[str, str] = field(default_factory=dict)
+    held: tuple[str, ...] = ()
 
     @property
     def why(self) -> str:
@@ -78,8 +82,9 @@ def surrogates_of(system: System, parts: Sequence[Part], step: float) -> Iterato
     with ExitStack() as stack:
         if system.foreign_parts:
             network = build_network(system, parts)
+            found.missing, found.held = rounded(network), held(network)
             for number, (spec, part) in enumerate(zip(system.parts, parts, strict=True)):
-                if spec.foreign:
+                if spec.foreign and part.name not in found.missing:
                     with activity(f"identifying {part.name}"):
                         _add(found, spec, part, _connected(network, number), step, stack)
         yield found
@@ -104,12 +109,13 @@ def without_missing(system: System, found: Surrogates) -> tuple[System, tuple[st
         FmuError: nothing is coupled without them.
     """
     if not found.missing:
-        return system, ()
+        return system, found.held
     rest = without_parts(system, found.missing)
     if not rest.connections:
         raise FmuError("; ".join(found.lines))
     names = ", ".join(found.missing)
-    return rest, (*found.lines, f"what is told is of the system without {names}")
+    told = f"what is told is of the system without {names}"
+    return rest, (*found.lines, told, *found.held)
 
 
 def _add(
@@ -160,7 +166,9 @@ def _surrogate(
     inputs, outputs = ports
     begin = _beginning(spec, make, inputs)
     if part.one_step or signature.tick:
-        return _with_clock(begin, part, signature, ports, step, stack)
+        proposed = [own_step(spec.fmu)] if spec.fmu else []
+        steps = list(dict.fromkeys((step, *proposed, *_USUAL_STEPS)))
+        return _with_clock(begin, part, signature, ports, steps, stack)
     lab = stack.enter_context(begin.laboratory(inputs, outputs, step))
     at = part.addresses  # an adapter that holds inputs has none of derivatives
     takes, gives = at.set_derivatives != 0, at.get_derivatives != 0
@@ -209,7 +217,7 @@ def _with_clock(
     part: Part,
     signature: Signature,
     ports: tuple[list[str], list[str]],
-    step: float,
+    steps: Sequence[float],
     stack: ExitStack,
 ) -> SampledSurrogate | str:
     """The map of a part with a clock of its own, or with steps of one length only."""
@@ -221,7 +229,7 @@ def _with_clock(
     fresh = begin
     if part.one_step:
         fresh = begin._replace(make=of_one_length, content=(*begin.content, "one length"))
-    wanted = (step, *_USUAL_STEPS) if part.one_step else (round_period(signature.tick),)
+    wanted = steps if part.one_step else (round_period(signature.tick),)
     for period in wanted:
         lab = fresh.laboratory(inputs, outputs, period)
         try:

@@ -217,3 +217,13 @@ def test_types_of_fmi2(selector):
     assert [str(result.data[f"a.{n}"].dtype) for n in ("steps", "engaged_shown")] == [
         "int32", "bool"
     ]  # fmt: skip
+
+
+def test_values_for_the_test_of_a_role_are_of_all_types(all_types, capsys):
+    """And those that make arrays larger come first, as in a run."""
+    values = ["u=1 2 3", "n=3", "UInt8_in=2", "Boolean_in=true", "Enumeration_in=second"]
+    command = ["check", str(all_types["plain"]), "--as", "load"]
+    assert main([*command, *(word for value in values for word in ("--set", value))]) == 1
+    assert "0 found" in capsys.readouterr().out  # it has no flange, and its values are taken
+    assert main([*command, "--set", "UInt8_in=2.5"]) == 2
+    assert "UInt8_in = 2.5: its type is UInt8, it takes a whole number" in capsys.readouterr().err

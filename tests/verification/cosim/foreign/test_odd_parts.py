@@ -4,6 +4,7 @@ Found by a critic who had the claim and not the code.
 """
 
 import math
+from dataclasses import replace
 
 import pytest
 from support.parts.fakes import OK, CallbackPart
@@ -113,3 +114,36 @@ def test_names_with_node_in_them_are_inputs():
     found = signature(Node)
     assert "shell.node1.force" in found.inputs
     assert found.dependencies()["odd.y"] == {"shell.node1.force"}
+
+
+class Deaf(Odd):
+    """Nothing passes, and nothing moves."""
+
+    def __init__(self):
+        super().__init__(tuple(f"odd.u{k}" for k in range(5)))
+
+    def step(self, t, h):
+        return OK
+
+    def out(self):
+        self["odd.y"] = 0.0
+
+
+def test_inputs_that_nothing_answers_are_one_line():
+    """What does not change is not said to change too little."""
+    assert signature(Deaf).notes == (
+        "no output answers odd.u0, odd.u1, odd.u2 and 2 more at the start values of the others",
+    )
+
+
+def test_outputs_in_single_precision_are_not_said_to_answer_nothing():
+    class Single(Deaf):
+        def __init__(self):
+            super().__init__()
+            self.variables["odd.y"] = replace(self.variables["odd.y"], type="Float32")
+
+    found = signature(Single)
+    assert found.kind is Kind.UNKNOWN
+    assert found.notes == (
+        "trials tell nothing of its outputs: none is of double precision (odd.y is a Float32)",
+    )

@@ -113,8 +113,9 @@ class SurrogatePart:
             **dict(zip(others, itertools.count(signals + p + m), strict=False)),
         }
         self.variables: Mapping[str, PartVariable] = {
-            name: replace(part.variables[name], reference=reference)
-            for name, reference in references.items()
+            name: replace(v, reference=references.get(name, v.reference))
+            for name, v in part.variables.items()
+            if name in references or not v.is_real
         }
 
     @property

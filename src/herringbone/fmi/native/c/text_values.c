@@ -9,8 +9,6 @@ static bool is_text(uint32_t reference) {
 
 Status instance_get_texts(Instance *instance, const uint32_t references[], size_t count,
                           const char *values[]) {
-    if (instance->now.phase == PHASE_INSTANTIATED)
-        return instance_refuse(instance, "getString");
     for (size_t i = 0; i < count; i++) {
         if (!is_text(references[i]))
             return instance_unknown(instance, "String", &references[i], 1);

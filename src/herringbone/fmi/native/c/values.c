@@ -99,10 +99,39 @@ static Status get_other(Instance *instance, uint32_t reference, double *value) {
     return instance_unknown(instance, "Real", &reference, 1);
 }
 
+static bool may_be_set(const Instance *instance, uint8_t access) {
+    if (access == HB_INPUT || access == HB_TUNABLE)
+        return true;
+    return instance->now.phase < PHASE_STEP && (access == HB_STATE || access == HB_FIXED);
+}
+
+/* Start values: of what the host may set, which nothing computes before initialisation. */
+static Status get_starts(Instance *instance, const uint32_t references[], size_t count,
+                         double values[]) {
+    Status worst = STATUS_OK;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t reference = references[i];
+        Status status = STATUS_OK;
+        values[i] = NAN;
+        if (reference == reference_of_time())
+            values[i] = instance->now.time;
+        else if (!is_signal(reference) && !instance_is_real(reference))
+            status = instance_unknown(instance, "Real", &reference, 1);
+        else if (may_be_set(instance, hb_component.access[reference]))
+            values[i] = instance->block[reference];
+        else
+            status = instance_fail(instance, STATUS_ERROR,
+                                   "%s.%s%s: it has no value before initialisation",
+                                   instance->name, real_name(reference), real_node(reference));
+        worst = status > worst ? status : worst;
+    }
+    return worst;
+}
+
 Status instance_get(Instance *instance, const uint32_t references[], size_t count,
                     double values[]) {
     if (instance->now.phase == PHASE_INSTANTIATED)
-        return instance_refuse(instance, "getReal");
+        return get_starts(instance, references, count, values);
     Status worst = instance->outdated ? instance_refresh(instance) : STATUS_OK;
     const double *block = instance->block;
     if (is_stale(instance) && count > 0)
@@ -150,12 +179,6 @@ static Status check_value(Instance *instance, uint32_t reference, double value) 
             return refuse_value(instance, reference, value, "it must be a whole number");
     }
     return STATUS_OK;
-}
-
-static bool may_be_set(const Instance *instance, uint8_t access) {
-    if (access == HB_INPUT || access == HB_TUNABLE)
-        return true;
-    return instance->now.phase < PHASE_STEP && (access == HB_STATE || access == HB_FIXED);
 }
 
 static void outdate(Instance *instance) {
@@ -219,8 +242,6 @@ Status instance_set(Instance *instance, const uint32_t references[], size_t coun
 }
 
 Status instance_get_choice(Instance *instance, uint32_t reference, int64_t *value) {
-    if (instance->now.phase == PHASE_INSTANTIATED)
-        return instance_refuse(instance, "getInteger");
     if (!is_choice(reference))
         return instance_unknown(instance, "Integer", &reference, 1);
     *value = (int64_t)instance->block[reference];
