@@ -11,9 +11,12 @@ one, or in the middle of a narrower band. A motion that does not repeat, as of t
 without a load, grows at any step, and tells nothing of the coupling. Systems of foreign parts alone
 are linear here: they decay at 0.98, and grow at 1.02 or in the middle of a narrower band.
 
+A limit at 0 Hz is where the rotation of shafts grows by `RIGID` per step, see `rotation_growth`:
+that rate itself is measured, and growth is that beyond it. Where other growth is slower than a run
+shows, runs are longer.
+
 Beside a part with a clock, steps that do not divide its period have no common one with it, and no
-prediction: runs are made at the told step, and at the last one before it that does. Growth that is
-told and slower than a run shows is no verdict.
+prediction: runs are made at the told step, and at the last one before it that does.
 """
 
 import argparse
@@ -22,21 +25,18 @@ import random
 from collections.abc import Mapping, Sequence
 
 from fuzz.campaign import last_commit
+from support.foreign.rotation_growth import rotation_growth
 from support.foreign.stranger_limits import limits
 
 from campaigns.plans import tell
 from herringbone.analysis.stability.amplification import Amplification
+from herringbone.analysis.stability.growth import RIGID
 from herringbone.analysis.stability.limits import default_algorithms
 from herringbone.analysis.stability.linear_parts import Strangers, linear_network, real_parts
 from herringbone.analysis.stability.steps.perturbed_run import perturbation_growth
 from herringbone.analysis.stability.steps.simulated_limit import run_steps
-from herringbone.analysis.stability.steps.step_limits import (
-    StepLimits,
-    clocks_of,
-    step_limits,
-)
+from herringbone.analysis.stability.steps.step_limits import StepLimits, step_limits
 from herringbone.analysis.stability.steps.step_scan import safe_growth
-from herringbone.analysis.stability.surrogates.sampled import common_steps
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.cosim.algorithms import Algorithm, parse_algorithm
 from herringbone.cosim.structure.system import System
@@ -48,56 +48,74 @@ TRIED = (0.9, 1.0, 1.02, 1.15)
 HALF = 0.5
 """The same of a run that tells whether the motion itself is regular, where the first one grows."""
 LINEAR = 0.02
-SEEN = 1.8
-"""Growth over a whole run that shows, see `run_steps`, as a power of e."""
+SEEN, SHOWN, MOST = 1.8, 4.0, 100000
+"""Growth over a whole run that shows, see `run_steps`, and that runs aim at in so many steps at
+most, as powers of e."""
 
 
-def contact_verdict(rates: Mapping[float, float], expected: float) -> str:
+def contact_verdict(rates: Mapping[float, float], rate_at_half: float) -> str:
     """Of growth by share of the limit, with contact; the least share must not grow.
 
     Args:
         rates: growth by share; 0 where none shows.
-        expected: the largest growth in a whole run that is predicted, as a power of e.
+        rate_at_half: the same at half the least share, where a run grows only if teeth rattle.
     """
-    least, *others = sorted(share for share in rates if share != HALF)
-    if rates.get(HALF, 0.0) > 0.0:
+    least, *others = sorted(rates)
+    if rate_at_half > 0.0:
         return "no verdict: a run grows at half of it, too, as where teeth rattle"
     if rates[least] > 0.0:
         return "TOO BOLD: a run grows below the prediction"
     if any(rates[share] > 0.0 for share in others):
         return "as predicted"
-    if expected < SEEN:
-        return f"slower than runs show: e^{expected:.2g} in a whole one is predicted"
     return f"TOO CAREFUL: no run grows up to {max(others):.3g} of the prediction"
 
 
-def of_runs(
-    system: System, strangers: Strangers, algorithm: Algorithm, predicted: StepLimits
-) -> dict[float, float]:
-    """Growth in runs by share of a limit."""
-    limit, steps = predicted.limit, run_steps(predicted.limit)
+class Runs:
+    """Runs of a system, whose growth is compared with a prediction.
 
-    def growth(share: float) -> float:
+    Args:
+        system: as it starts.
+        strangers: its foreign parts.
+        algorithm: of the coupling.
+        predicted: its limits.
+        steps: of each run.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        strangers: Strangers,
+        algorithm: Algorithm,
+        predicted: StepLimits,
+        steps: int,
+    ) -> None:
+        self._system, self._strangers, self._algorithm = system, strangers, algorithm
+        self._predicted, self._steps = predicted, steps
+
+    def growth(self, share: float) -> float:
+        """Per macro step at a share of the limit, as a power of e; 0 where none shows."""
+        given = self._system, self._strangers, self._algorithm, share * self._predicted.limit
+        if self._predicted.frequency == 0.0:
+            return max(0.0, rotation_growth(*given) - RIGID)
+        system, strangers, algorithm, step = given
         rate = perturbation_growth(
-            system, lambda: real_parts(system, strangers), algorithm, share * limit, steps=steps
+            system, lambda: real_parts(system, strangers), algorithm, step, steps=self._steps
         )
-        return rate if rate * steps > SEEN else 0.0
+        return rate if rate * self._steps > SEEN else 0.0
 
-    found = {share: growth(share) for share in shares_of(predicted, strangers)}
-    if found[min(found)] > 0.0 and not predicted.steps:
-        found[HALF] = growth(HALF)
-    return found
+    def growths(self) -> dict[float, float]:
+        """By share of the limit: of a clock's neighbouring steps, or around it."""
+        return {share: self.growth(share) for share in shares_of(self._predicted)}
 
 
-def shares_of(predicted: StepLimits, strangers: Strangers) -> list[float]:
+def shares_of(predicted: StepLimits) -> list[float]:
     """Of a limit, at which runs are made: with the middle of a narrow first band.
 
     Beside parts with clocks, the last step that goes with these before the limit, and the limit.
     """
     limit = predicted.limit
     if predicted.steps:
-        grid = common_steps(clocks_of(strangers), predicted.largest)
-        return [max((step for step in grid if step < limit), default=limit) / limit, 1.0]
+        return [predicted.below / limit, 1.0]
     low, high = predicted.unstable_bands[0] if predicted.unstable_bands else (limit, math.inf)
     middle = math.sqrt(low * high) / limit
     return sorted([*TRIED, *([middle] if TRIED[0] < middle < TRIED[-1] else [])])
@@ -127,12 +145,16 @@ def compared(
         return what, f"nothing is promised: {100.0 * found.residual:.2g} % missed"
     if math.isinf(found.limit):
         return what, "no limit"
-    rates = of_runs(started, strangers, algorithm, found)
-    amplification = Amplification(*linear_network(system, strangers=strangers), algorithm)
-    steps = [share * found.limit for share in rates]
-    radius = max(safe_growth(amplification.growth, step).radius for step in steps)
-    expected = math.log(radius) * run_steps(found.limit)
-    return f"{what}  {told(rates)}", contact_verdict(rates, expected)
+    if found.steps and not found.below:
+        return what, "no verdict: nothing is known of shorter steps"
+    growing = Amplification(*linear_network(system, strangers=strangers), algorithm).growth
+    largest = max(safe_growth(growing, s * found.limit).radius for s in shares_of(found))
+    shows = min(MOST, math.ceil(SHOWN / math.log(largest))) if 1.0 < largest < math.inf else 0
+    runs = Runs(started, strangers, algorithm, found, max(run_steps(found.limit), shows))
+    rates = runs.growths()
+    grows_below = rates[min(rates)] > 0.0 and not found.steps
+    verdict = contact_verdict(rates, runs.growth(HALF) if grows_below else 0.0)
+    return f"{what}  {told(rates)}", verdict
 
 
 def drawn(ranges: Sequence[str]) -> dict[str, float]:

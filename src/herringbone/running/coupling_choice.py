@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from herringbone.analysis.stability.instability import warn_if_unstable
-from herringbone.analysis.stability.steps.step_limits import clocks_of
+from herringbone.analysis.stability.steps.clock_grid import clocks_of
 from herringbone.core import HerringboneError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part

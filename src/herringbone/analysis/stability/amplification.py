@@ -42,10 +42,11 @@ _TURNED = 0.02
 _HALF, _FALLS = 0.5, 0.35
 """At half the step less than this share of the growth is left, if it is that of held values: 1/4
 where it goes with the step's square. By time alone it is 1/2."""
-_OWN = 0.5
-"""Rate [1/s] of growth in time whatever the step that no step is blamed for. Inner steps d of a
-part make it: one that reads the torque of its shaft K before it turns on has K d / 2 of torque over
-speed, which drives an inertia J at K d / (2 J): 0.08 1/s at 5e4 N m/rad, 2 us and 0.6 kg m^2.
+OWN = 0.5
+"""Rate [1/s] of growth in time whatever the step that no step is blamed for; users are told. Inner
+steps d of a part make it: one that reads the torque of its shaft K before it turns on has K d / 2
+of torque over speed, which drives an inertia J at K d / (2 J): 0.08 1/s at 5e4 N m/rad, 2 us and
+0.6 kg m^2. It is set to some times that, not derived.
 """
 _ROWS = HISTORY - 1
 _PER_SECOND = 1e3
@@ -145,7 +146,8 @@ class Amplification:
         if self._noise and 0.0 < found.radius - 1.0 - GROWTH < _TURNED > turned:
             residual = min(self.residual, 1.0)
             if not self._of_coupling(found, matrix, step):
-                return growth_of(matrix, step, max(self._noise, residual), max(RIGID, _OWN * step))
+                others = growth_of(matrix, step, max(self._noise, residual), max(RIGID, OWN * step))
+                return replace(others, own=math.log(found.radius) / step)
         return found
 
     def _of_coupling(self, found: Growth, matrix: np.ndarray, step: float) -> bool:

@@ -47,6 +47,7 @@ class Growth:
         fast_change: of the motion of `fast_radius` in a step, distance of its eigenvalue from 1.
         near_mirror: the same as `radius` of motions that come to half the rate of communication
             points in a step that is longer by a tenth or less; infinite: not known.
+        own: growth in time of a slow motion [1/s] that is there whatever the step; 0: none known.
     """
 
     radius: float
@@ -55,6 +56,7 @@ class Growth:
     mirror_radius: float = 0.0
     fast_change: float = np.inf
     near_mirror: float = np.inf
+    own: float = 0.0
 
     def per_step(self, steps: int) -> "Growth":
         """The same for one macro step, of the growth in so many."""

@@ -1,5 +1,6 @@
 """Stable macro steps of every algorithm, bonds, and what to choose: known before the run."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -16,14 +17,13 @@ from herringbone.analysis.stability.recommendation import (
     Recommendation,
     rank,
 )
+from herringbone.analysis.stability.steps.clock_grid import clocks_of, common_steps
 from herringbone.analysis.stability.steps.simulated_limit import nonlinear_limit
 from herringbone.analysis.stability.steps.step_limits import (
     Progress,
     StepLimits,
-    clocks_of,
     step_limits,
 )
-from herringbone.analysis.stability.surrogates.sampled import common_steps
 from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity, Role
@@ -182,7 +182,10 @@ def _found(
     limit = step_limits(system, algorithm, progress, strangers)
     if runs is None:
         return limit
-    grid = common_steps(clocks_of(strangers), limit.largest) if limit.steps else ()
+    grid: list[float] = []
+    if limit.steps:
+        near = {step for step in (limit.below, limit.limit) if 0.0 < step < math.inf}
+        grid = sorted({*common_steps(clocks_of(strangers), limit.largest), *near})
     seen = nonlinear_limit(runs, algorithm, limit.limit, limit.unstable_bands, strangers, grid)
     return replace(limit, simulated_limit=seen)
 

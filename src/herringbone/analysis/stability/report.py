@@ -6,32 +6,25 @@ from textwrap import wrap
 from typing import Any
 
 from herringbone.analysis.stability.bonds import Bond
+from herringbone.analysis.stability.limit_lines import in_us, said_of_limits, short
 from herringbone.analysis.stability.limits import Stability
 from herringbone.analysis.stability.linear_parts import MeshStiffness
 from herringbone.analysis.stability.recommendation import Ranking, Recommendation
 from herringbone.analysis.stability.steps.simulated_limit import HIGHEST, LOWEST
 from herringbone.analysis.stability.steps.step_limits import StepLimits
-from herringbone.analysis.stability.steps.step_scan import LARGEST_STEP
 from herringbone.core.wording import option
 
-_MICRO = 1e6
 _WIDTH = 100
 """Longest line of the text, in characters."""
-_SCHEDULE = ",schedule=bodies_first"
-"""The default, left out of names."""
-
-
-def _us(step: float, largest: float = LARGEST_STEP) -> str:
-    return f"{_MICRO * step:.1f}" if math.isfinite(step) else f"> {_MICRO * largest:.0f}"
 
 
 def _simulated(step: float | None) -> str:
-    return "-" if step is None else _us(step)
+    return "-" if step is None else in_us(step)
 
 
 def _bands(found: StepLimits) -> str:
     parts = [
-        f"{_us(low)}-{_us(high)}" if math.isfinite(high) else f"from {_us(low)}"
+        f"{in_us(low)}-{in_us(high)}" if math.isfinite(high) else f"from {in_us(low)}"
         for low, high in found.unstable_bands
     ]
     return ", ".join(parts) or "none"
@@ -66,8 +59,8 @@ def _limit_rows(found: Stability, *, runs: bool) -> list[tuple[str, ...]]:
     for limits in found.limits:
         seen = (_simulated(limits.simulated_limit),) if runs else ()
         frequency = f"{limits.frequency:.0f}" if math.isfinite(limits.frequency) else "-"
-        steps = (_us(limits.mesh_stiffness[name], limits.largest) for name in names)
-        name = limits.algorithm.removesuffix(_SCHEDULE)
+        steps = (in_us(limits.mesh_stiffness[name], limits.largest) for name in names)
+        name = short(limits.algorithm)
         rows.append((name, *steps, *seen, frequency, _bands(limits)))
     return rows
 
@@ -81,7 +74,7 @@ def _bond_lines(bonds: Sequence[Bond]) -> list[str]:
     ]
     for bond in bonds:
         frequency = f"{bond.frequency / (2.0 * math.pi):.0f}"
-        limits = (_us(bond.limits[rule]) for rule in rules)
+        limits = (in_us(bond.limits[rule]) for rule in rules)
         rows.append((bond.name, frequency, f"{bond.damping_ratio:.3f}", *limits))
     head, units, *numbers = _table(rows)
     below = map(_bodies, bonds)
@@ -117,7 +110,8 @@ def stability_text(found: Stability) -> str:
         lines.append(f"all bonds together: {found.highest_frequency / (2.0 * math.pi):.0f} Hz")
     if found.ranking.best:
         lines += ["", *_recommended(found.ranking, found.tolerance)]
-    return "\n".join([*lines, *(line for n in found.notes for line in wrap(f"note: {n}", _WIDTH))])
+    said = [*said_of_limits(found.limits), *(f"note: {note}" for note in found.notes)]
+    return "\n".join([*lines, *(line for n in said for line in wrap(n, _WIDTH))])
 
 
 def _foreign_lines(found: Stability) -> list[str]:
@@ -132,7 +126,7 @@ def _foreign_lines(found: Stability) -> list[str]:
         tried = ", ".join(f"{name} on {n}" for name, n in found.fresh_instances.items())
         lines.append(f"without saved states, each trial on an instance of its own: {tried}")
     lines += [
-        f"nothing is promised for {limits.algorithm.removesuffix(_SCHEDULE)}: at its limit they "
+        f"nothing is promised for {short(limits.algorithm)}: at its limit they "
         f"miss by {100.0 * limits.residual:.2g} %"
         for limits in found.limits
         if not limits.promised
@@ -145,11 +139,11 @@ def _recommended(ranking: Ranking, tolerance: float) -> list[str]:
     chosen = ranking.ranked[0]
     rows: list[tuple[str, ...]] = [("ranked", "step", "doStep calls"), ("", "[us]", "[1/ms]")]
     for found in ranking.ranked:
-        name = found.algorithm.removesuffix(_SCHEDULE)
-        rows.append((name, _us(found.step), f"{found.passes_per_ms:.3g}"))
+        name = short(found.algorithm)
+        rows.append((name, in_us(found.step), f"{found.passes_per_ms:.3g}"))
     return [
         f"recommended for {100.0 * tolerance:g} %: "
-        f"{option('algorithm', chosen.algorithm.removesuffix(_SCHEDULE))} "
+        f"{option('algorithm', short(chosen.algorithm))} "
         f"{option('step', float(f'{chosen.step:.3g}'))}",
         f"expected error {100.0 * chosen.expected_error:.2g} %, bounded by "
         f"{chosen.bounded_by}; {100.0 * chosen.separation_error:.2g} % where teeth separate",
@@ -187,6 +181,8 @@ def stability_summary(found: Stability) -> dict[str, Any]:
             {
                 "algorithm": limits.algorithm,
                 "limit": _number(limits.limit),
+                "below": limits.below if limits.steps else None,
+                "own_growth": limits.own,
                 "unstable_bands": [[_number(x) for x in band] for band in limits.unstable_bands],
                 "mesh_stiffness": {k: _number(v) for k, v in limits.mesh_stiffness.items()},
                 "frequency": _number(limits.frequency),

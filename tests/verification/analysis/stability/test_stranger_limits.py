@@ -17,9 +17,9 @@ import herringbone as hb
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.limits import default_algorithms
 from herringbone.analysis.stability.linear_parts import linear_network
+from herringbone.analysis.stability.steps.clock_grid import clocks_of, common_steps
 from herringbone.analysis.stability.steps.simulated_limit import nonlinear_limit
-from herringbone.analysis.stability.steps.step_limits import clocks_of, step_limits
-from herringbone.analysis.stability.surrogates.sampled import common_steps
+from herringbone.analysis.stability.steps.step_limits import step_limits
 from herringbone.commands import main as cli
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms import Jacobi, iterated, parse_algorithm

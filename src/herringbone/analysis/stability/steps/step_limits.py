@@ -7,27 +7,29 @@ maximum mesh stiffness. Not covered: teeth that separate, and parametric excitat
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 
 from herringbone.analysis.stability.amplification import Amplification
-from herringbone.analysis.stability.growth import GROWTH, Growth
+from herringbone.analysis.stability.growth import Growth
 from herringbone.analysis.stability.linear_parts import (
     NO_STRANGERS,
     MeshStiffness,
     Strangers,
     linear_network,
 )
+from herringbone.analysis.stability.steps.clock_grid import (
+    bands_on_grid,
+    clocks_of,
+    stability_on_grid,
+)
 from herringbone.analysis.stability.steps.step_scan import (
     COARSE,
     LARGEST_STEP,
     GrowthOf,
     first_unstable_near,
-    safe_growth,
     unstable_bands,
 )
-from herringbone.analysis.stability.surrogates.sampled import SampledSurrogate, common_steps
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.components.registry import component
 from herringbone.core import ParameterError
@@ -60,6 +62,9 @@ class StepLimits:
             fitted, at the limit; 0 without foreign parts.
         largest: step [s] at which the scan ends.
         steps: how many were looked at, if only some go with parts that have clocks; else 0.
+        below: then the last of them below the limit [s], 0 if there is none; nothing is known of
+            steps between the two.
+        own: growth in time of a slow motion [1/s] at the limit that is there whatever the step.
     """
 
     algorithm: str
@@ -70,6 +75,8 @@ class StepLimits:
     residual: float = 0.0
     largest: float = LARGEST_STEP
     steps: int = 0
+    below: float = 0.0
+    own: float = 0.0
 
     @property
     def promised(self) -> bool:
@@ -119,6 +126,7 @@ def step_limits(
     found = {MeshStiffness.MINIMUM.value: first, "mean": first, MeshStiffness.MAXIMUM.value: first}
     inside = min(_BEYOND * first, np.sqrt(np.prod(bands[0]))) if bands else np.nan
     frequency = growth(float(inside)).frequency if bands else np.nan
+    own = max(growth(float(step)).own for step in ((first, inside) if bands else (largest,)))
     has_mesh = any(
         component(str(part.component)).freeze for part in system.parts if not part.foreign
     )
@@ -130,13 +138,9 @@ def step_limits(
         for stranger in strangers.values():
             stranger.surrogate.look_at(first)
         return step_limits(system, algorithm, progress, strangers, again=False)
-    return StepLimits(str(algorithm), bands, found, frequency, residual=residual, largest=largest)
-
-
-def clocks_of(strangers: Strangers) -> list[SampledSurrogate]:
-    """What stands for parts with clocks."""
-    found = (stranger.surrogate for stranger in strangers.values())
-    return [surrogate for surrogate in found if isinstance(surrogate, SampledSurrogate)]
+    return StepLimits(
+        str(algorithm), bands, found, frequency, residual=residual, largest=largest, own=own
+    )
 
 
 def _limits_on_grid(
@@ -148,24 +152,18 @@ def _limits_on_grid(
 ) -> StepLimits:
     """Unstable steps among those of which parts with clocks have maps, at mean stiffness."""
     clocks = clocks_of(strangers)
-    grid = common_steps(clocks, largest)
-    if not grid:
+    stable = stability_on_grid(growth, clocks, largest)
+    if not stable:
         periods = ", ".join(f"{clock.period:g} s" for clock in clocks)
         raise ParameterError(f"no step goes with the periods of parts with clocks: {periods}")
-    unstable = {step: safe_growth(growth, step).radius > 1.0 + GROWTH for step in grid}
-    bands: list[tuple[float, float]] = []
-    for before, step in pairwise([0.0, *grid]):
-        if unstable[step] and not unstable.get(before, False):
-            bands.append((step, np.inf))
-        elif not unstable[step] and unstable.get(before, False):
-            bands[-1] = bands[-1][0], step
+    bands, last = bands_on_grid(stable), max(stable)
     first = bands[0][0] if bands else np.inf
-    residual = _residual(amplification, strangers, first if bands else grid[-1])
+    residual = _residual(amplification, strangers, first if bands else last)
     frequency = growth(first).frequency if bands else np.nan
     same = dict.fromkeys((stiffness.value for stiffness in MeshStiffness), first)
     return StepLimits(
-        str(algorithm), tuple(bands), same, frequency, residual=residual, largest=grid[-1],
-        steps=len(grid),
+        str(algorithm), bands, same, frequency, residual=residual, largest=last,
+        steps=len(stable), below=max((step for step in stable if step < first), default=0.0),
     )  # fmt: skip
 
 

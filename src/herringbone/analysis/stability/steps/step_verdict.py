@@ -12,7 +12,8 @@ from herringbone.analysis.stability.linear_parts import (
     Strangers,
     linear_network,
 )
-from herringbone.analysis.stability.steps.step_limits import Progress, clocks_of
+from herringbone.analysis.stability.steps.clock_grid import clocks_of
+from herringbone.analysis.stability.steps.step_limits import Progress
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.core.energy_report import Diagnosis, hertz
 from herringbone.cosim.algorithms import Algorithm

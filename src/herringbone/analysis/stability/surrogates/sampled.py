@@ -7,8 +7,6 @@ part ticks in one of them and holds its outputs in the others; the amplification
 the product of the matrices of both. Other steps have no map.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from herringbone.analysis.stability.surrogates.identification import (
@@ -28,15 +26,6 @@ _SAME = 1e-6
 """Deviation of a number of periods, or steps, from a whole one that is rounding."""
 _SEED = 13
 _MEASURED = 5e-3
-_PARTS = (40, 32, 25, 20, 16, 12, 10, 8, 6, 5, 4, 3, 2)
-_PERIODS = (
-    *range(1, 17),
-    *range(18, 33, 2),
-    *range(36, 65, 4),
-    *range(72, 129, 8),
-    *range(144, 257, 16),
-)
-"""Parts and numbers of a period that are looked at as macro steps."""
 _QUIET = 1e-9
 """Answers below this share of an output are rounding."""
 
@@ -221,24 +210,6 @@ class SampledSurrogate:
                 x = step.a @ x + step.b @ u
             found.append(missed_share(answers, truth))
         return min(found)
-
-
-def common_steps(clocks: Sequence[SampledSurrogate], largest: float) -> list[float]:
-    """Macro steps [s] up to a largest one of which all these parts have maps, ascending."""
-    period = clocks[0].period
-    wanted = [period / n for n in _PARTS] + [period * n for n in _PERIODS]
-    found = []
-    for step in sorted(set(wanted)):
-        if step > (1.0 + _SAME) * max(largest, period):
-            break
-        try:
-            for clock in clocks:
-                clock.parts_of_period(step)
-        except HerringboneError:
-            continue
-        if all(clock.takes(step) for clock in clocks):
-            found.append(step)
-    return found
 
 
 def round_period(measured: float) -> float:
