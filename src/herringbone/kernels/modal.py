@@ -12,7 +12,7 @@ integrators that makes (t/h)**j / j! (C. F. Van Loan, IEEE Trans. Autom. Control
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.compiling.jit import hot, kernel
 
 DEGREES = 5
 PROPAGATOR = 4 + 2 * DEGREES
@@ -97,7 +97,7 @@ def powers_of(degree: int) -> int:
     return 2 if degree < 2 else DEGREES
 
 
-@kernel
+@hot
 def advance(
     x: np.ndarray, phi: np.ndarray, f: np.ndarray, degree: int, room: int, count: int
 ) -> None:
@@ -124,7 +124,7 @@ def advance(
         x[m + i] += phi[9 * m + i] * f_2 + phi[11 * m + i] * f_3 + phi[13 * m + i] * f_4
 
 
-@kernel
+@hot
 def next_interval(f: np.ndarray, degree: int, room: int, count: int) -> None:
     """Re-expand forces, as of `advance`, about the end of the step, for the next one as long."""
     for k in range(degree):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from herringbone.components.modal_housing import layout as at
-from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.compiling.jit import hot, kernel
 from herringbone.kernels.signals import STRIDE
 
 
@@ -39,7 +39,7 @@ def rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
         dx[at.MODES + i] = _acceleration(b, i, _modal_force(b, i, forces, STRIDE))
 
 
-@kernel
+@hot
 def write_motion(b: np.ndarray) -> None:
     """Write position and velocity of the seats from those of the modes.
 
@@ -68,7 +68,7 @@ def write_motion(b: np.ndarray) -> None:
         b[at.V + 2 * STRIDE * k] = (sums[4] + sums[6]) + (sums[5] + sums[7])
 
 
-@kernel
+@hot
 def accelerate(b: np.ndarray, forces: np.ndarray) -> None:
     """Write the accelerations of modes and seats under the forces on the modes."""
     for i in range(count(b)):

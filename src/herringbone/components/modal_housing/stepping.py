@@ -7,7 +7,7 @@ import numpy as np
 from herringbone.components.modal_housing import layout as at
 from herringbone.components.modal_housing.motion import accelerate, count, write_motion
 from herringbone.kernels import modal
-from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.compiling.jit import hot, kernel
 from herringbone.kernels.signals import STRIDE, all_finite, monomial, shift, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG
 
@@ -67,7 +67,7 @@ def _push(b: np.ndarray, seat: int, forces: np.ndarray, to: np.ndarray) -> None:
         to[i] += x[i] * f_x + x[at.MODES + i] * f_y + x[2 * at.MODES + i] * f_z
 
 
-@kernel
+@hot
 def _project(b: np.ndarray, w: np.ndarray, degree: int) -> None:
     """Write the forces on the modes as polynomials of the time in intervals between nodes.
 
