@@ -6,26 +6,20 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from support.gearing.own_pair import write_pair
+from support.steady import STILL
 from threadpoolctl import threadpool_limits
 
 import herringbone as hb
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.marching.marched import Following, start_of
-from herringbone.analysis.steady.sensitivities.assumed import assumed
-from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point
-from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.fused.core import Steps
-from herringbone.components.registry import COMPONENTS
-from herringbone.core import ParameterError
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 
 GROUPS = ("bearing_force", "seat_velocity")
 PERIODS, PER_PERIOD, STEP = 40, 64, 5e-6
-STILL = {"gear_mesh.symmetry_deviation": 0.0}
-HOUSING = COMPONENTS["modal_housing"].resources / "modes.csv"
 
 
 def marched(
@@ -55,11 +49,6 @@ def error(state: hb.SteadyState, group: str, periods: int = PERIODS) -> float:
     expected = state.signal(group, times)
     alternating = expected - expected.mean(axis=0)
     return float(np.linalg.norm(values - expected) / np.linalg.norm(alternating))
-
-
-@pytest.fixture(scope="module")
-def solver() -> SteadySolver:
-    return prepared_solver("test_rig", wishes=Wishes(values=STILL), tolerance=1e-4)[0]
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
@@ -173,35 +162,6 @@ def test_an_iteration_that_ran_away_is_no_state(solver, monkeypatch):
     assert state.notes
 
 
-def test_an_open_set_point_takes_a_value():
-    state = hb.steady("turbine", values=STILL, speed=100.0)
-    assert state.mean("turbine.flange.w") == pytest.approx(100.0, rel=1e-9)
-
-
-def test_speed_of_what_follows_its_loads_is_refused():
-    with pytest.raises(ParameterError, match=r"speed: no part of .* declares a"):
-        hb.steady("ship", values=STILL, speed=100.0)
-
-
-@pytest.mark.parametrize(
-    ("asked", "said"),
-    [
-        ({"speed": 0.0}, "speed = 0 rad/s"),
-        ({"speed": math.nan}, "speed = nan rad/s"),
-        ({"torque": math.inf}, "torque = inf N m"),
-    ],
-)
-def test_a_point_without_motion_is_refused(asked, said):
-    with pytest.raises(ParameterError, match=said):
-        hb.steady("test_rig", values=STILL, **asked)
-
-
-def test_what_no_rotor_does_ends_without_a_state():
-    state = hb.steady("test_rig", torque=1e9, values=STILL)
-    assert not state.converged
-    assert state.notes
-
-
 def test_run_outs_make_the_period_long():
     """27 and 81 teeth: 81 meshes; a march over two of these periods stays on the state."""
     state = hb.steady("test_rig", tolerance=1e-3)
@@ -226,62 +186,6 @@ def test_teeth_that_deviate_make_the_period_long(tmp_path):
     # Once per turn of the pinion: pitch errors, which ideal teeth do not have.
     orders = dict(zip(state.orders, np.abs(state.amplitudes("pinion_left.f_y")[0]), strict=True))
     assert orders[1.0] > 1.0
-
-
-def test_teeth_at_no_load_are_said_to_drift_apart():
-    state = hb.steady("test_rig", values=STILL, torque=0.0, speed=100.0)
-    assert not state.found
-    assert "nothing holds the teeth together" in state.notes[-1]
-
-
-def test_sensitivities_are_differences():
-    """Central differences of the same problem: what is left is the second order of their steps."""
-    speed, name = 1300.0 * np.pi / 30.0, "gear_mesh.mesh_damping_ratio"
-    solver = prepared_solver("test_rig", wishes=Wishes(values=STILL), tolerance=1e-5)[0]
-    state = solver.solve(Point(speed=speed))
-    found = sensitivities(state, "bearing_force", [name])[name]
-    sides = [
-        solver.solve(Point(speed=speed, values={name: found.value * (1.0 + e)}))
-        for e in (1e-3, -1e-3)
-    ]
-    levels = [side.level("bearing_force") for side in sides]
-    expected = (levels[0] - levels[1]) / (2e-3 * found.value)
-    assert found.derivative == pytest.approx(expected, rel=1e-3)
-
-
-def test_sensitivities_of_long_periods_are_differences():
-    """81 meshes with run-outs; a damping of the contact, and a mass beside it."""
-    speed, values = 1300.0 * np.pi / 30.0, {"gear_mesh.symmetry_deviation": 100e-6}
-    solver = prepared_solver("test_rig", wishes=Wishes(values=values), tolerance=1e-5)[0]
-    state = solver.solve(Point(speed=speed))
-    assert state.meshes == 81
-    names = ["gear_mesh.mesh_damping_ratio", "gear_mesh.wheel.mass"]
-    for name, found in sensitivities(state, "bearing_force", names).items():
-        sides = [
-            solver.solve(Point(speed=speed, values={name: found.value * (1.0 + e)}), state)
-            for e in (1e-3, -1e-3)
-        ]
-        levels = [side.level("bearing_force") for side in sides]
-        expected = (levels[0] - levels[1]) / (2e-3 * found.value)
-        assert found.derivative == pytest.approx(expected, rel=1e-3)
-
-
-def test_dampings_of_a_housing_have_a_sensitivity(tmp_path):
-    """All ratios of its modes together; against states with files of 1 % more and less."""
-    state = hb.steady("test_rig", values=STILL, tolerance=1e-6)
-    (name,) = (n for n in assumed(state.structure.system) if n.endswith("housing.damping_ratio"))
-    lines = HOUSING.read_text(encoding="utf-8").splitlines()
-    first = next(k for k, line in enumerate(lines) if line[0].isdigit())
-    levels = []
-    for factor in (1.01, 0.99):
-        rows = [line.rpartition(",") for line in lines[first:]]
-        scaled = [f"{head},{factor * float(ratio)!r}" for head, _, ratio in rows]
-        file = tmp_path / f"modes_{factor}.csv"
-        file.write_text("\n".join([*lines[:first], *scaled, ""]), encoding="utf-8")
-        values = {**STILL, "modal_housing.modes": str(file)}
-        levels.append(hb.steady("test_rig", values=values, tolerance=1e-6).level("seat_velocity"))
-    found = sensitivities(state, "seat_velocity", [name])[name].relative
-    assert found == pytest.approx(np.log(levels[0] / levels[1]) / np.log(1.01 / 0.99), rel=1e-3)
 
 
 def test_a_state_is_drawn():

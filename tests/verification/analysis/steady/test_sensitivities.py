@@ -1,0 +1,65 @@
+"""Sensitivities of steady states are differences of neighbours."""
+
+import numpy as np
+import pytest
+from support.steady import STILL
+
+import herringbone as hb
+from herringbone.analysis.steady.sensitivities.assumed import assumed
+from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
+from herringbone.analysis.steady.set_points import Point
+from herringbone.components.registry import COMPONENTS
+from herringbone.running.operating.steady import prepared_solver
+from herringbone.running.prepared import Wishes
+
+HOUSING = COMPONENTS["modal_housing"].resources / "modes.csv"
+
+
+def test_sensitivities_are_differences():
+    """Central differences of the same problem: what is left is the second order of their steps."""
+    speed, name = 1300.0 * np.pi / 30.0, "gear_mesh.mesh_damping_ratio"
+    solver = prepared_solver("test_rig", wishes=Wishes(values=STILL), tolerance=1e-5)[0]
+    state = solver.solve(Point(speed=speed))
+    found = sensitivities(state, "bearing_force", [name])[name]
+    sides = [
+        solver.solve(Point(speed=speed, values={name: found.value * (1.0 + e)}))
+        for e in (1e-3, -1e-3)
+    ]
+    levels = [side.level("bearing_force") for side in sides]
+    expected = (levels[0] - levels[1]) / (2e-3 * found.value)
+    assert found.derivative == pytest.approx(expected, rel=1e-3)
+
+
+def test_sensitivities_of_long_periods_are_differences():
+    """81 meshes with run-outs; a damping of the contact, and a mass beside it."""
+    speed, values = 1300.0 * np.pi / 30.0, {"gear_mesh.symmetry_deviation": 100e-6}
+    solver = prepared_solver("test_rig", wishes=Wishes(values=values), tolerance=1e-5)[0]
+    state = solver.solve(Point(speed=speed))
+    assert state.meshes == 81
+    names = ["gear_mesh.mesh_damping_ratio", "gear_mesh.wheel.mass"]
+    for name, found in sensitivities(state, "bearing_force", names).items():
+        sides = [
+            solver.solve(Point(speed=speed, values={name: found.value * (1.0 + e)}), state)
+            for e in (1e-3, -1e-3)
+        ]
+        levels = [side.level("bearing_force") for side in sides]
+        expected = (levels[0] - levels[1]) / (2e-3 * found.value)
+        assert found.derivative == pytest.approx(expected, rel=1e-3)
+
+
+def test_dampings_of_a_housing_have_a_sensitivity(tmp_path):
+    """All ratios of its modes together; against states with files of 1 % more and less."""
+    state = hb.steady("test_rig", values=STILL, tolerance=1e-6)
+    (name,) = (n for n in assumed(state.structure.system) if n.endswith("housing.damping_ratio"))
+    lines = HOUSING.read_text(encoding="utf-8").splitlines()
+    first = next(k for k, line in enumerate(lines) if line[0].isdigit())
+    levels = []
+    for factor in (1.01, 0.99):
+        rows = [line.rpartition(",") for line in lines[first:]]
+        scaled = [f"{head},{factor * float(ratio)!r}" for head, _, ratio in rows]
+        file = tmp_path / f"modes_{factor}.csv"
+        file.write_text("\n".join([*lines[:first], *scaled, ""]), encoding="utf-8")
+        values = {**STILL, "modal_housing.modes": str(file)}
+        levels.append(hb.steady("test_rig", values=values, tolerance=1e-6).level("seat_velocity"))
+    found = sensitivities(state, "seat_velocity", [name])[name].relative
+    assert found == pytest.approx(np.log(levels[0] / levels[1]) / np.log(1.01 / 0.99), rel=1e-3)
