@@ -184,8 +184,8 @@ NOTED = {
     "records that fold the third harmonic": (  # 8 x 450 Hz need 1 / 7200 s
         lambda f: {"record_step": 5e-4, "t_end": 2e-2, "fuse": True},
         "records every 0.0005 s tell frequencies up to 1000 Hz: mesh harmonics of gear_mesh from "
-        "3 on, 1350 Hz, show folded below, in lines, spectra and radiated power; record_step=0.0001 "
-        "shows the first 8",
+        "3 on, 1350 Hz, show folded below, in lines, spectra and radiated power; "
+        "record_step=0.0001 shows the first 8",
     ),
     "stage of REXS": (
         lambda f: {"gear": STAGE},
