@@ -18,28 +18,30 @@ _LINE = (
     b"herringbone: part_failed: an FMU ended the process by a call of exit(); what was not written "
     b"yet is lost\n"
 )
-_up: list[object] = []
+_up: set[int] = set()
+"""Addresses of the marks of guards that are up, in any thread."""
 
 
 @_HANDLER
-def _at_exit(_: int | None) -> None:
-    if _up:
+def _at_exit(mark: int | None) -> None:
+    if mark in _up:  # else its guard is taken back, whatever others are up
         os.write(2, _LINE)
         os._exit(EXIT_CODES[OutcomeKind.PART_FAILED])
 
 
 @contextlib.contextmanager
 def exit_guard() -> Iterator[None]:
-    """Context in which FMUs are called; may be nested."""
+    """Context in which FMUs are called; may be nested, and up in several threads at a time."""
     library: Any = None if os.name == "nt" else ctypes.CDLL(None)
     if not hasattr(library, "__cxa_atexit"):
         yield
         return
     mark = ctypes.c_int()  # its address stands for the module to which the handler belongs
-    library.__cxa_atexit(_at_exit, None, ctypes.byref(mark))
-    _up.append(mark)
+    at = ctypes.addressof(mark)
+    library.__cxa_atexit(_at_exit, ctypes.byref(mark), ctypes.byref(mark))
+    _up.add(at)
     try:
         yield
     finally:
-        _up.remove(mark)
+        _up.remove(at)
         library.__cxa_finalize(ctypes.byref(mark))  # runs the handler, and takes it back

@@ -225,3 +225,16 @@ def test_labels_of_outputs_are_the_ends_that_differ(table):
     figure = levels(Points(own, UNITS), "speed", (one, two, far))
     labels = [axes.get_ylabel().split(",")[0] for axes in figure.axes[::2]]
     assert labels == [one, two, "left.f_y"]
+
+
+def test_curves_are_named_so_that_no_two_parameters_are_meant():
+    """The shortest ending of their own; a sweep of a script has no system's name in its title."""
+    names = ["b.pinion.stiffness", "b.wheel.stiffness", "gear.backlash"]
+    rows = [(p, w, b) for p in (1.0, 2.0) for w in (3.0, 4.0) for b in (5.0, 6.0)]
+    table = pd.DataFrame(rows, columns=names).assign(outcome="steady")
+    table["force.rms"] = np.arange(8.0) + 1.0
+    points = Points(table, dict.fromkeys(names, "1"))
+    label = points.curves(names[0])[0][0]
+    assert label == "wheel.stiffness 3, backlash 5"
+    assert points.headline("Levels") == "Levels"
+    assert Points(table, {}, "rig").headline("Levels") == "Levels: rig"

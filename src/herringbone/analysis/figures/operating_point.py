@@ -105,6 +105,10 @@ def _teeth(result: Result, gear: str) -> float | None:
     return parameter(result, gear, Quantity.NUMBER_OF_TEETH, "pinion")
 
 
+_ENDS = 2
+"""Of a rig's shafts: one that drives and one that loads."""
+
+
 @dataclass(frozen=True)
 class PowerBalance:
     """Mean powers of the closed-power-flow rig [W].
@@ -132,7 +136,14 @@ class PowerBalance:
 
 
 def power_balance(result: Result) -> PowerBalance | None:
-    """Mean powers over the steady part; None without both motors and the pinion's transducer."""
+    """Mean powers over the steady part; None without both motors and the pinion's transducer.
+
+    Where there are more drives, loads or gear pairs, powers are those of flanges, see
+    `flange_power`: one of each would leave out what the others take.
+    """
+    ends = [*result.parts_with(Role.DRIVE), *result.parts_with(Role.LOAD)]
+    if len(ends) > _ENDS or len(result.parts_with(Role.GEAR_PAIR)) > 1:
+        return None
     needed = [
         signal(result, Role.DRIVE, Quantity.ELECTRICAL_POWER),
         signal(result, Role.DRIVE, Quantity.TORQUE),

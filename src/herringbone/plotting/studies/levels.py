@@ -68,7 +68,7 @@ def levels(
     curves = points.curves(across)
     kept = thinned(curves)
     hidden = f"; {len(kept)} of {len(curves)} curves" if len(kept) < len(curves) else ""
-    title = f"Levels{hidden}{points.told_lost}: {points.title}"
+    title = points.headline(f"Levels{hidden}{points.told_lost}")
     figure = new_figure(title, len(shown), 2, width=14.5)
     panels = figure.subplots(len(shown), 2, squeeze=False, sharex=True)
     for (left, right), group in zip(panels, shown, strict=True):

@@ -42,7 +42,7 @@ def level_map(
         raise ParameterError("the table has no levels: there is no column that ends in .rms")
     cells = points.table.groupby([up, across], dropna=False)
     most = points.told_largest(up, across)
-    title = f"Levels over {across} and {up}{most}{points.told_lost}: {points.title}"
+    title = points.headline(f"Levels over {across} and {up}{most}{points.told_lost}")
     figure = new_figure(title, 1, len(columns), width=7.0 * len(columns), gap=1.2)
     figure.set_figheight(5.5)
     panels = figure.subplots(1, len(columns), squeeze=False)[0]

@@ -117,6 +117,10 @@ class Points:
         peak = float(np.nanmax(np.abs(values), initial=0.0)) if values.size else 0.0
         return scaled_unit(self.units.get(column, ""), peak)
 
+    def headline(self, what: str) -> str:
+        """Title of a picture: what it shows, and of what, if that is known."""
+        return f"{what}: {self.title}" if self.title else what
+
     def curves(self, across: str) -> list[tuple[str, pd.DataFrame]]:
         """Points by curve: one per combination of the other parameters, along the abscissa.
 
@@ -131,11 +135,21 @@ class Points:
         for values, rows in self.table.groupby(others, sort=True, dropna=False):
             key = values if isinstance(values, tuple) else (values,)
             told = [
-                f"{c.rpartition('.')[2]} {self._told(c, v)}"
+                f"{self._short_name(c)} {self._told(c, v)}"
                 for c, v in zip(others, key, strict=True)
             ]
             found.append((", ".join(told), rows.sort_values(across)))
         return found
+
+    def _short_name(self, parameter: str) -> str:
+        """The shortest ending of a parameter's name that no other parameter has."""
+        words = parameter.split(".")
+        endings = [".".join(words[k:]) for k in range(len(words))]
+        return next(
+            ending
+            for ending in reversed(endings)
+            if [c for c in self.parameters if f".{c}".endswith(f".{ending}")] == [parameter]
+        )
 
     def _told(self, column: str, value: object) -> str:
         """A value of a parameter in the unit in which all its values read well."""

@@ -29,7 +29,7 @@ def waterfall(points: Points, group: str | None = None) -> Figure:
     if MESH not in points.table or not orders:
         raise ParameterError(f"the table has no mesh frequency or no mesh orders of '{shown}'")
     most = points.told_largest(across)
-    title = f"Mesh orders of {points.called(shown)}{most}{points.told_lost}: {points.title}"
+    title = points.headline(f"Mesh orders of {points.called(shown)}{most}{points.told_lost}")
     figure = new_figure(title, 1, width=10.0)
     figure.set_figheight(6.5)
     axes = figure.subplots()

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from herringbone.analysis.asked import by_half, group, mesh_forces, shaft_torques, signal
 from herringbone.analysis.figures.channels import largest_lines, moments
 from herringbone.analysis.figures.flange_power import mean_powers
+from herringbone.analysis.figures.misfits.records import folded_from
 from herringbone.analysis.figures.operating_point import (
     power_balance,
     run_mesh_frequency,
@@ -159,8 +160,11 @@ def _seats(result: Result) -> Iterator[str]:
 
 def _spectral_lines(result: Result) -> Iterator[str]:
     """The largest lines of each channel group, each with the channel in which it is largest."""
-    mesh, steady = run_mesh_frequency(result), steady_part(result).steady
-    for name in result.channels if steady else ():
+    mesh, part = run_mesh_frequency(result), steady_part(result)
+    if folded_from(result) is not None:  # which order a line is, records do not tell then
+        mesh = None
+    highest = min(_HIGHEST, 0.5 / part.sample_step) if part.sample_step else _HIGHEST
+    for name in result.channels if part.steady else ():
         columns = group(result, name)
         units = {result.units[column] for column in columns}
         if len(units) != 1:
@@ -173,7 +177,7 @@ def _spectral_lines(result: Result) -> Iterator[str]:
             channel = ".".join(line.column.split(".")[-2:])
             yield (f"{label:<{_LABEL}}{line.frequency:>7.1f} Hz{order:<12}"
                    f" {line.amplitude * factor:>8.3g} {unit} at {channel}")  # fmt: skip
-            label = f"  (up to {_HIGHEST:.0f} Hz)" if label.strip() else ""
+            label = f"  (up to {highest:.0f} Hz)" if label.strip() else ""
 
 
 def _radiation(result: Result) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """Spectra: amplitude, frequency and mean of known signals; mesh orders."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -110,6 +111,15 @@ def test_steady_part_leaves_out_the_first_fifth_and_the_run_up():
     result.data["gearbox.gear_mesh.pinion.w"] = SPEED * result.data["time"].to_numpy()
     assert not steady_part(result).steady
     assert run_mesh_frequency(result) is None
+
+
+def test_a_second_load_is_not_left_out():
+    """One drive and one load balance; with another load powers are told by part."""
+    result = make_result()
+    known = result.info.anatomy
+    parts = {**known.parts, "second_load": known.parts["load_motor"]}
+    info = replace(result.info, anatomy=replace(known, parts=parts))
+    assert power_balance(replace(result, info=info)) is None
 
 
 def test_power_balance_closes():
