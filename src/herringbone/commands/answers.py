@@ -21,10 +21,12 @@ class Told(NamedTuple):
     Attributes:
         text: for people.
         summary: as JSON may hold it.
+        again: it would be the same another time; False of FMUs that do not repeat.
     """
 
     text: str
     summary: Any
+    again: bool = True
 
 
 def answered(options: argparse.Namespace, find: Callable[[Tell], Told]) -> Told:
@@ -52,8 +54,8 @@ def answered(options: argparse.Namespace, find: Callable[[Tell], Told]) -> Told:
 
     with answers.finding() as found, _warnings() as warned:
         told = find(tell)
-        if not warned.count and not policy().remarks:
-            found.answer = {"said": said, **told._asdict()}
+        if told.again and not warned.count and not policy().remarks:
+            found.answer = {"said": said, "text": told.text, "summary": told.summary}
     return told
 
 

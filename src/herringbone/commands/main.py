@@ -74,6 +74,7 @@ def _housing(options: argparse.Namespace) -> AbstractContextManager[Policy]:
     return foreign_fmu_policy(
         in_process=getattr(options, "in_process", None),
         deadline=getattr(options, "call_deadline", None),
+        longest_trial=getattr(options, "longest_trial", None),
     )
 
 

@@ -77,6 +77,12 @@ def add_cells(sub: argparse.ArgumentParser) -> None:
         help="longest time that a call of an FMU in a child process may take; 60 s if not given",
     )  # fmt: skip
     sub.add_argument(
+        "--longest-trial", type=int, metavar="STEPS",
+        help="of a trial for the test of a role, as that of a housing before it is coupled: of a "
+        "slow FMU a test that takes a longer one is left out, and says so; as many as the tests "
+        "want",
+    )  # fmt: skip
+    sub.add_argument(
         "--fresh", action="store_true",
         help="forget what trials of foreign FMUs told before, of all, and make them anew: of FMUs "
         "that read what their files do not show",

@@ -13,19 +13,20 @@ from herringbone.core import FmuError, HerringboneError, Instance, ParameterErro
 from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.declaring.roles import Role
 from herringbone.core.given import check_reference
-from herringbone.core.part import STRUCTURE, Part, PartVariable
+from herringbone.core.part import Part, PartVariable
 from herringbone.core.places.files import as_texts, beside, is_file, same_folder
 from herringbone.cosim.fmu.file import require_file
 from herringbone.cosim.fmu.opening import many_of, open_fmu, runs_again
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.starting.approached_part import approached
-from herringbone.cosim.structure.system import PartSpec, System, Values
+from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.cosim.units import in_si_units
 from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.exporting.ssp_import import load_ssp, ssp_scene
+from herringbone.running.foreign.started import set_values
 from herringbone.running.housings.fmu_remarks import (
     HousingRemarks,
     refuse_other_kinds,
@@ -193,16 +194,6 @@ def instances(spec: PartSpec) -> Iterator[Callable[[], Part]]:
 def in_one_run(system: System) -> list[str]:
     """Foreign parts that can be in no second run of this process; raises FmuError."""
     return [p.name for p in system.parts if p.fmu and not runs_again(p.name, p.fmu)]
-
-
-def set_values(part: Part, values: Values) -> None:
-    """Set start values; those first that decide how large arrays are; raises HerringboneError."""
-
-    def later(name: str) -> bool:
-        return name not in part.variables or part.variables[name].causality != STRUCTURE
-
-    for name in sorted(values, key=later):
-        part.set(name, values[name])
 
 
 def _with_rates(part: Part, name: str) -> dict[str, PartVariable]:

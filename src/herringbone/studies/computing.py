@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import chain as joined
 from itertools import islice
 
+from herringbone.cosim.cell.policy import elsewhere
 from herringbone.studies.keys import Chain
 from herringbone.studies.store import StudyFolder
 from herringbone.studies.working.chain import Done, Job, read_so_far, run_chain, run_chains
@@ -87,7 +88,7 @@ def compute(
     def begin(chains: Sequence[Chain]) -> Future[list[Done]]:
         jobs = [replace(job(c.numbers), so_far=str(store.so_far(c))) for c in chains]
         if not here:
-            return where.executor.submit(run_chains, jobs)
+            return where.executor.submit(elsewhere(run_chains), jobs)
         counted.update((chain.key, len(chain.keys)) for chain in chains)
         return where.executor.submit(run_chains, jobs, progress)
 

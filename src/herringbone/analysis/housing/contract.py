@@ -15,7 +15,12 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from herringbone.analysis.finding import Finding, Report, judged, not_tested, remark
-from herringbone.analysis.housing.behaviour import SHORT, Behaviour, steps_of_tests
+from herringbone.analysis.housing.behaviour import (
+    SHORT,
+    Behaviour,
+    random_forces,
+    steps_of_tests,
+)
 from herringbone.analysis.housing.runs import FORCES, POSITIONS, VELOCITIES, Runs
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component_for
@@ -29,6 +34,10 @@ from herringbone.cosim.units import in_si_units
 STEP = 2e-5
 """Communication step size [s] of the tests; two-way coupling wants no larger one."""
 _VARIABLES = "variables"
+_DECLARED = {_VARIABLES, "units", "dependencies"}
+"""Tests without steps; if one fails, no other one is made."""
+_FIRST = 4
+"""Steps in which an FMU shows whether it repeats."""
 _ENERGY = {"passivity", "damping"}
 """Tests that a housing fails which makes energy."""
 _UNITS = (
@@ -94,6 +103,23 @@ def check_housing(
         if what == "no delay" and longest is None:
             runs.tell_cost(part.name, steps_of_tests(), SHORT)
     return findings
+
+
+def repeats(open_part: Callable[[], Part], findings: Sequence[Finding], step: float) -> bool:
+    """True if two instances give equal bits in their first steps, or none was stepped.
+
+    Args:
+        open_part: makes a new instance, not yet initialised.
+        findings: of its tests.
+        step: communication step size [s].
+
+    Raises:
+        HerringboneError: it does not start or does not step.
+    """
+    if not all(finding.holds for finding in findings if finding.test in _DECLARED):
+        return True
+    runs, forces = Runs(lambda: in_si_units(open_part()), step), random_forces(0, step, _FIRST)
+    return np.array_equal(runs.positions(forces), runs.positions(forces), equal_nan=True)
 
 
 def compliance_of(open_part: Callable[[], Part]) -> float:

@@ -16,6 +16,7 @@ _AXES = "xyz"
 FORCES = tuple(f"{seat}.f_{axis}" for seat in HALVES for axis in _AXES)
 POSITIONS = tuple(f"{seat}.s_{axis}" for seat in HALVES for axis in _AXES)
 VELOCITIES = tuple(f"{seat}.v_{axis}" for seat in HALVES for axis in _AXES)
+VARIABLES = (*FORCES, *POSITIONS, *VELOCITIES)
 
 
 class Runs:
@@ -69,7 +70,6 @@ class Runs:
         if steps * self.seconds > PATIENCE:
             tell(
                 f"{name} is slow, {self.seconds:.2g} s a step: the tests of what a housing must do "
-                f"take {steps} steps, {lasting(steps * self.seconds)}; 'herringbone check FMU --as "
-                f"housing --longest-trial {short}' leaves those out that take the most, 'run' with "
-                "--no-probe all"
+                f"take {steps} steps, {lasting(steps * self.seconds)}; --longest-trial {short} "
+                "leaves those out that take the most, 'run' with --no-probe all"
             )

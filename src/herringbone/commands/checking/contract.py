@@ -1,7 +1,6 @@
 """What `herringbone check FMU --as ROLE` shows: the contract of a role, one line a test."""
 
 import argparse
-import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -10,13 +9,14 @@ from tqdm import tqdm
 
 from herringbone.analysis.finding import Finding, Report, Verdict, not_tested
 from herringbone.analysis.flange.contract import check_flanges
-from herringbone.analysis.housing.contract import STEP, check_housing, usual_compliance
+from herringbone.analysis.housing.contract import STEP, usual_compliance
+from herringbone.commands.answers import Told
 from herringbone.commands.options import start_values
-from herringbone.commands.output import show
 from herringbone.core.declaring.roles import Role
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.housing import read_housing
 from herringbone.running.foreign.started import own_step, started, started_content
+from herringbone.running.housings.tested import Tested, tested_housing
 
 ROLES = {
     "housing": Role.HOUSING,
@@ -24,11 +24,12 @@ ROLES = {
     "load": Role.LOAD,
     "coupling": Role.COUPLING,
 }
+_SET = "VARIABLE=VALUE"
 _HEADER = ("test", "verdict", "measured", "limit")
 
 
-def check_command(options: argparse.Namespace) -> int:
-    """Show what holds, one line a test; 1 if something does not.
+def told_of(options: argparse.Namespace) -> Told:
+    """What holds, one line a test.
 
     Args:
         options: of the command `check`, with a role.
@@ -36,49 +37,52 @@ def check_command(options: argparse.Namespace) -> int:
     Raises:
         HerringboneError: the FMU cannot be used, or does not step.
     """
+    housing = ROLES[options.role] is Role.HOUSING
     with tqdm(disable=None, bar_format="[{elapsed}] {desc}") as bar:
-        findings, step = _tested(options, bar.set_description_str)
+        of_role = _of_housing if housing else _of_flanges
+        (findings, repeats), step = of_role(options, bar.set_description_str)
     failed = sum(not finding.holds for finding in findings)
     untested = sum(finding.verdict is Verdict.NOT_TESTED for finding in findings)
-    if options.json:
-        rows = [dict(zip(_HEADER, _cells(finding), strict=True)) for finding in findings]
-        found = {"fmu": str(options.fmu), "role": options.role, "step": step, "holds": not failed}
-        show(json.dumps({**found, "tests": rows}, indent=1))
-        return 1 if failed else 0
-    show(f"{options.fmu} as {options.role}, steps of {1e6 * step:g} us:\n{_table(findings)}")
     remarks = sum(finding.verdict is Verdict.REMARK for finding in findings)
     said = f"{failed} test(s) fail" if failed else "nothing fails" if untested else "all tests hold"
     said = f"{said}, {untested} not possible" if untested else said
-    show(f"{said}; {remarks} remark(s)" if remarks else said)
-    return 1 if failed else 0
+    said = f"{said}; {remarks} remark(s)" if remarks else said
+    head = f"{options.fmu} as {options.role}, steps of {1e6 * step:g} us:"
+    rows = [dict(zip(_HEADER, _cells(finding), strict=True)) for finding in findings]
+    found = {"fmu": str(options.fmu), "role": options.role, "step": step, "holds": not failed}
+    return Told(f"{head}\n{_table(findings)}\n{said}", {**found, "tests": rows}, again=repeats)
 
 
-def _tested(options: argparse.Namespace, progress: Report) -> tuple[list[Finding], float]:
-    """Findings, and the step of the trials [s]."""
-    role, fmu, longest = ROLES[options.role], options.fmu, options.longest_trial
+def _of_housing(options: argparse.Namespace, progress: Report) -> tuple[Tested, float]:
+    """What tests of a housing find, and the step of the trials [s]."""
+    step = options.step or STEP
+    found = tested_housing(
+        options.fmu,
+        usual_compliance(),
+        start_values(options.set, _SET),
+        static=None if options.against is None else _static(options.against),
+        step=step,
+        longest=options.longest_trial,
+        progress=progress,
+    )
+    return found, step
+
+
+def _of_flanges(options: argparse.Namespace, progress: Report) -> tuple[Tested, float]:
+    """What tests of a motor, load or coupling find, whose trials are known; and their step [s]."""
+    fmu, values = options.fmu, start_values(options.set, _SET)
+    step = options.step or own_step(fmu)
     with many_of(fmu.stem, fmu) as new:
-        values = start_values(options.set, "VARIABLE=VALUE")
-        make = started(new, values)
-        if role is Role.HOUSING:
-            step = options.step or STEP
-            static = None if options.against is None else _static(options.against)
-            usual = usual_compliance()
-            found = check_housing(
-                make, static=static, usual=usual, step=step, longest=longest, progress=progress
-            )
-            return found, step
-        step = options.step or own_step(fmu)
-        flanges = options.flange or ()
         found = check_flanges(
-            make,
-            role,
+            started(new, values),
+            ROLES[options.role],
             step=step,
-            flanges=flanges,
-            longest=longest,
+            flanges=options.flange or (),
+            longest=options.longest_trial,
             progress=progress,
             content=started_content(fmu, values),
         )
-        return found, step
+    return Tested(found, repeats=False), step
 
 
 def _static(against: Path) -> np.ndarray:

@@ -2,11 +2,12 @@
 
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, TypeVar
 
 from herringbone.core import ParameterError
 from herringbone.cosim.cell.system_calls import FUTEX
@@ -14,6 +15,7 @@ from herringbone.cosim.cell.system_calls import FUTEX
 if TYPE_CHECKING:
     from herringbone.cosim.cell.process import Cell
 
+T = TypeVar("T")
 DEADLINE = 60.0
 """Longest time that a call of an FMU takes, unless something else is asked for [s]."""
 _SPIN = 20e-6
@@ -46,10 +48,12 @@ class Policy:
         deadline: longest time that a call of an FMU in a cell takes [s].
         remarks: what was found out.
         idle: cells by their FMU that may be used again; None: each is used once.
+        longest_trial: steps that a trial may have in the test of a role; None: any number.
     """
 
     in_process: bool = False
     deadline: float = DEADLINE
+    longest_trial: int | None = None
     remarks: list[Remark] = field(default_factory=list)
     idle: dict[str, list["Cell"]] | None = None
 
@@ -64,23 +68,30 @@ def policy() -> Policy:
 
 @contextmanager
 def foreign_fmu_policy(
-    *, in_process: bool | None = None, deadline: float | None = None
+    *,
+    in_process: bool | None = None,
+    deadline: float | None = None,
+    longest_trial: int | None = None,
 ) -> Iterator[Policy]:
     """Context in which foreign FMUs run so.
 
     Args:
         in_process: in this process; None: as around this context, or else in cells.
         deadline: longest time of a call [s]; if not given as around this context, or `DEADLINE`.
+        longest_trial: steps of a trial in the test of a role; None: as around this context, or any.
 
     Raises:
-        ParameterError: the deadline is not positive.
+        ParameterError: the deadline is not positive, or a trial has no step.
     """
     if deadline is not None and not deadline > 0.0:
         raise ParameterError(f"call_deadline = {deadline:g} s: it must be positive")
+    if longest_trial is not None and longest_trial < 1:
+        raise ParameterError(f"--longest-trial {longest_trial}: it must be 1 at least")
     outer = policy()
     found = Policy(
         outer.in_process if in_process is None else in_process,
         outer.deadline if deadline is None else deadline,
+        outer.longest_trial if longest_trial is None else longest_trial,
         idle={},
     )
     token = _policy.set(found)
@@ -90,6 +101,23 @@ def foreign_fmu_policy(
         _policy.reset(token)
         for cell in (cell for cells in (found.idle or {}).values() for cell in cells):
             cell.close()
+
+
+def elsewhere(function: Callable[..., T]) -> Callable[..., T]:
+    """A function, of a module, that does the same in another process, under the policy of here."""
+    here = policy()
+    return partial(_under, here.in_process, here.deadline, here.longest_trial, function)
+
+
+def _under(
+    in_process: bool,
+    deadline: float,
+    longest_trial: int | None,
+    function: Callable[..., T],
+    *arguments: object,
+) -> T:
+    with foreign_fmu_policy(in_process=in_process, deadline=deadline, longest_trial=longest_trial):
+        return function(*arguments)
 
 
 @contextmanager

@@ -4,11 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from herringbone.core import HerringboneError
-from herringbone.core.part import Part
+from herringbone.core.part import STRUCTURE, Part
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.structure.system import Values
 from herringbone.running.content import digest_of_file, values_of
-from herringbone.running.loading import set_values
 
 _STEP = 1e-4
 
@@ -34,6 +33,16 @@ def started(new: Callable[[], Part], values: Values) -> Callable[[], Part]:
         return part
 
     return make
+
+
+def set_values(part: Part, values: Values) -> None:
+    """Set start values; those first that decide how large arrays are; raises HerringboneError."""
+
+    def later(name: str) -> bool:
+        return name not in part.variables or part.variables[name].causality != STRUCTURE
+
+    for name in sorted(values, key=later):
+        part.set(name, values[name])
 
 
 def started_content(fmu: Path, values: Values) -> tuple[str, ...]:

@@ -1,22 +1,22 @@
 """Testing a housing FMU against the contract of housings before it runs."""
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from herringbone.analysis.finding import Finding, Verdict
-from herringbone.analysis.housing.contract import check_housing, of_energy
+from herringbone.analysis.housing.contract import of_energy
+from herringbone.analysis.housing.runs import VARIABLES
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, StructureError
-from herringbone.core.caching.files import keep, kept
-from herringbone.core.caching.keys import digest_of, sources_key
-from herringbone.core.caching.tried import tried_folder
+from herringbone.cosim.cell.policy import policy
 from herringbone.cosim.fmu.file import read_fmu
-from herringbone.cosim.fmu.opening import open_fmu
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
+from herringbone.running.housings.tested import tested_housing
 
 _SIZE = "compliance"
+_SHOWN = 3
+"""Missing variables, by name in a line."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class HousingRemarks:
 
 
 def refuse_other_kinds(system: System, part: str, fmu: Path) -> None:
-    """Check that an FMU has anything of what a housing is joined by; what else lacks is remarked.
+    """Check that an FMU has what a housing is joined by, so that one line says what lacks.
 
     Args:
         system: in which the part is joined.
@@ -44,7 +44,7 @@ def refuse_other_kinds(system: System, part: str, fmu: Path) -> None:
 
     Raises:
         FmuError: it cannot be read.
-        StructureError: nothing that joins the part is there: it is something else.
+        StructureError: nothing that joins the part is there: it is something else; or some is not.
     """
     ends = (system.split(path) for pair in system.connections for path in pair)
     joined = dict.fromkeys(name for owner, name in ends if owner == part)
@@ -53,6 +53,14 @@ def refuse_other_kinds(system: System, part: str, fmu: Path) -> None:
         raise StructureError(
             f"{part}: {fmu} is no housing: it has none of {', '.join(joined)}, by which "
             f"{system.name} joins it; see 'herringbone check {fmu} --as housing'"
+        )
+    wanted = [v for v in VARIABLES if any(v == name or v.startswith(f"{name}.") for name in joined)]
+    if missing := [v for v in wanted if v not in known]:
+        more = f" and {len(missing) - _SHOWN} more" if len(missing) > _SHOWN else ""
+        raise StructureError(
+            f"{part}: {fmu} lacks {', '.join(missing[:_SHOWN])}{more}, of the {len(wanted)} "
+            f"variables by which {system.name} joins a housing; see 'herringbone check {fmu} --as "
+            "housing'"
         )
 
 
@@ -67,17 +75,9 @@ def replacement_remarks(part: str, fmu: Path, usual: float) -> HousingRemarks | 
         usual: static compliance of the part that is replaced [m/N].
     """
     try:
-        digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
-    except OSError:
-        return None
-    known = tried_folder("housings") / f"{digest_of(sources_key(), digest, f'{usual:.3g}')}.json"
-    if (found := kept(known)) is None:
-        try:
-            found = _tested(fmu, usual)
-        except HerringboneError as error:
-            return HousingRemarks(part, (f"{fmu} could not be tested as housing: {error}",))
-        keep(known, found)
-    lines, energy = found
+        lines, energy = _tested(fmu, usual)
+    except HerringboneError as error:
+        return HousingRemarks(part, (f"{fmu} could not be tested as housing: {error}",))
     return HousingRemarks(part, tuple(lines), energy) if lines else None
 
 
@@ -96,13 +96,16 @@ def _tested(fmu: Path, usual: float) -> tuple[list[str], str]:
             f"(limit {finding.limit}); see 'herringbone check {fmu} --as housing'"
         )
 
-    findings = check_housing(lambda: open_fmu("housing", fmu), usual=usual)
+    findings = tested_housing(fmu, usual, longest=policy().longest_trial).findings
     lines = [broken(finding) for finding in findings if not finding.holds]
     lines += [
         f"{fmu}: the static {finding.test} of its seats is {finding.measured}"
         for finding in findings
         if finding.test == _SIZE and finding.verdict is Verdict.REMARK
     ]
+    if left := [finding for finding in findings if finding.verdict is Verdict.NOT_TESTED]:
+        names = ", ".join(finding.test for finding in left)
+        lines.append(f"{fmu} was tested as housing, but not for {names}: {left[0].measured}")
     return lines, next(map(broken, of_energy(findings)), "")
 
 

@@ -1,6 +1,7 @@
 """What is predicted of foreign parts with names of their own, and with signals of other types."""
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from support.foreign.kinds import build_kinds
 
 from herringbone.analysis.stability.bonds import bond_table, highest_frequency
 from herringbone.analysis.stability.linear_parts import linear_network
+from herringbone.analysis.stability.surrogates.stand_in import StandIn
 from herringbone.commands.main import main
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.foreign.surrogates import opened_surrogates
@@ -51,6 +53,19 @@ def test_the_bond_of_a_foreign_body_is_found_by_its_connections(parts):
         w = np.sqrt(STIFFNESS * sum(1.0 / J for J in INERTIAS))
         assert bond.frequency == pytest.approx(w, rel=1e-5)
         assert highest_frequency(*network) == pytest.approx(w, rel=1e-5)
+
+
+def test_differences_without_a_unit_are_of_the_size_of_the_answers(parts):
+    """A mass that is 1000 times lighter moves 1000 times as far by the same force."""
+    found = []
+    for mass in (INERTIAS[0], 1e-3 * INERTIAS[0]):
+        light = replace(parts[0], values={"m": mass, "c": 0.0})
+        with opened_surrogates(
+            System("light", "", (light, *parts[1:3]), WIRES), STEP
+        ) as surrogates:
+            stand_in = StandIn(surrogates.strangers["wheel"])
+            found.append([stand_in.output_change(name, 1.0) for name in "xv"])
+    assert np.divide(*reversed(found)) == pytest.approx([1e3, 1e3], rel=1e-3)
 
 
 @pytest.fixture

@@ -77,6 +77,7 @@ class StandIn:
         self.carried, self.states = self._inner.carried, stranger.surrogate.order
         self.state_changes = [1.0] * self.states + self.carried_changes
         self._lengths: tuple[float, ...] = ()
+        self._answers = _sizes_of_answers(stranger.surrogate)
 
     @property
     def last_step(self) -> np.ndarray:
@@ -140,8 +141,14 @@ class StandIn:
         return found + [_RATES * change for change in found] * self.surrogate.rated
 
     def output_change(self, name: str, change: float) -> float:
-        """Difference of an output: what its unit asks for, but above rounding of its value."""
-        value = self._inner.get([name])[0] if name in self._inner.variables else 0.0
+        """Difference of an output: what its unit asks for, but above rounding of its value.
+
+        Without a unit it is what the output answers to the usual changes of the inputs.
+        """
+        variable = self._inner.variables.get(name)
+        value = self._inner.get([name])[0] if variable else 0.0
+        if variable and not variable.unit:
+            change = self._answers.get(name, change)
         return max(change, _SHARE * abs(value))
 
     @property
@@ -154,3 +161,11 @@ class StandIn:
         if self.surrogate.fresh_instances and not self.clock:
             lengths = {2.0 ** (math.ceil(_RUNGS * math.log2(h)) / _RUNGS) for h in lengths}
         return max((self.surrogate.residual(h, orders) for h in lengths), default=0.0)
+
+
+def _sizes_of_answers(surrogate: Surrogate | SampledSurrogate) -> dict[str, float]:
+    """How far outputs move where inputs do by their amplitudes, and states by 1; those that do."""
+    step, n = surrogate.over(surrogate.base), len(surrogate.inputs)
+    sizes = np.abs(step.c).sum(axis=1) + np.abs(step.d[:, :n]) @ surrogate.amplitudes
+    pairs = zip(surrogate.outputs, sizes, strict=False)  # rates of the outputs follow
+    return {name: float(size) for name, size in pairs if size > 0.0}
