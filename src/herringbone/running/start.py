@@ -92,6 +92,11 @@ def _settled(system: System, step: float) -> tuple[System, tuple[str, ...]]:
             f"{name}: foreign; it is stepped over {way.duration:g} s before the start, under what "
             "it is given in the steady rotation in which the run begins"
         )
+    lines += [
+        f"{path} pulsates by +-{swing:.3g} as its shaft turns: the run starts with its mean, and "
+        "parts begin to swing then"
+        for path, swing in found.pulsations.items()
+    ]
     fastest = found.fastest
     if abs(found.acceleration) > _MOVED:
         lines.append(
