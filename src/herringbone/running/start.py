@@ -73,15 +73,12 @@ def _gradual(system: System, t_end: float) -> tuple[Start, float, str]:
     """How a system begins that is in no equilibrium, its ramp's time [s], and both in words."""
     given = ramp_times(system)
     if not given:
-        return (
-            Start.REST,
-            0.0,
-            (
-                "the run starts with the values that the parts declare, as no own part gives a load "
-                "that could rise; one that does, connected to a foreign set point, starts without "
-                f"load and lets it rise over a time that you set ({', '.join(_rising())})"
-            ),
+        words = (
+            "the run starts with the values that the parts declare, as no own part gives a load "
+            "that could rise; one that does, connected to a foreign set point, starts without "
+            f"load and lets it rise over a time that you set ({', '.join(_rising())})"
         )
+        return Start.REST, 0.0, words
     user = max(float(value) for value in given.values())
     time = user or fitted_ramp(known_parts(system), t_end)
     return Start.RAMP, time, f"the load rises from zero over {time:.3g} s instead"
