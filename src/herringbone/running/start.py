@@ -73,8 +73,12 @@ def _gradual(system: System, t_end: float) -> tuple[Start, float, str]:
     """How a system begins that is in no equilibrium, its ramp's time [s], and both in words."""
     given = ramp_times(system)
     if not given:
-        why = "no own part gives a load that could rise"
-        return Start.REST, 0.0, f"the run starts with the values that the parts declare, as {why}"
+        words = (
+            "the run starts with the values that the parts declare, as no own part gives a load "
+            "that could rise; one that does, connected to a foreign set point, starts without "
+            f"load and lets it rise over a time that you set ({', '.join(_rising())})"
+        )
+        return Start.REST, 0.0, words
     user = max(float(value) for value in given.values())
     time = user or fitted_ramp(known_parts(system), t_end)
     return Start.RAMP, time, f"the load rises from zero over {time:.3g} s instead"
@@ -92,6 +96,11 @@ def _settled(system: System, step: float) -> tuple[System, tuple[str, ...]]:
             f"{name}: foreign; it is stepped over {way.duration:g} s before the start, under what "
             "it is given in the steady rotation in which the run begins"
         )
+    lines += [
+        f"{path} pulsates by +-{swing:.3g} as its shaft turns: the run starts with its mean, and "
+        "parts begin to swing then"
+        for path, swing in found.pulsations.items()
+    ]
     fastest = found.fastest
     if abs(found.acceleration) > _MOVED:
         lines.append(
@@ -139,6 +148,15 @@ def ramp_times(system: System) -> Values:
         if part.component
         for ramp in COMPONENTS[part.component].declaration.offered(Quantity.LOAD_RAMP_TIME)
     }
+
+
+def _rising() -> list[str]:
+    """Ramp times of all components that have one."""
+    return [
+        f"{name}.{ramp.name}"
+        for name, kind in COMPONENTS.items()
+        for ramp in kind.declaration.offered(Quantity.LOAD_RAMP_TIME)
+    ]
 
 
 def equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:

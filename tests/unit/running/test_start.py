@@ -166,6 +166,12 @@ def test_any_part_may_be_foreign(rig, loaded, tmp_path, foreign):
     assert {f"{foreign}.{name}" for name in values(found, foreign)} <= set(loaded.values)
 
 
+def test_where_no_load_could_rise_a_line_tells_what_to_connect(rig, loaded, tmp_path):
+    _, notes = started(rig.with_fmu("bench_controller", tmp_path / "strange.fmu"), loaded)
+    assert "the run starts with the values that the parts declare" in notes[0]
+    assert notes[0].endswith(f"over a time that you set (bench_controller.{RAMP})")
+
+
 def test_all_parts_foreign_start_as_they_declare(rig, loaded, tmp_path):
     strange = rig
     for part in rig.parts:

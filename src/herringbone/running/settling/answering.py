@@ -23,6 +23,9 @@ class Answering:
     Args:
         links: what they take and give.
         strangers: they.
+
+    Attributes:
+        pulsations: by part, see `Settled`, of what was settled last.
     """
 
     def __init__(self, links: Links, strangers: Sequence[Stranger]) -> None:
@@ -30,6 +33,7 @@ class Answering:
         self._durations = {part.name: _STEP if part.at_once else _FIRST for part in strangers}
         self._gradual, self._settle = True, set[str]()
         self._answer = np.zeros(len(links.has_states))
+        self.pulsations = dict[str, tuple[str, float]]()
 
     def at_acceleration(self, motion: OwnMotion, acceleration: float) -> OwnMotion:
         """A motion at another acceleration [rad/s^2], that began where foreign parts do."""
@@ -75,6 +79,7 @@ class Answering:
             if part.answered(now):
                 self._settle.add(part.name)
             found[part.name] = now.outputs
+            self.pulsations[part.name] = now.pulsation
         self._answer = self._links.row(found)
         return self._answer
 

@@ -1,5 +1,6 @@
 """The search for a start in equilibrium with foreign parts; see `settled_start`."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +37,7 @@ class SettledStart(NamedTuple):
         moved: that was moved to where torques balance.
         declared: path of the foreign input that declares it; "" where something else says it.
         given: speed that was set or declared [rad/s].
+        pulsations: halves of the ranges of outputs that pulsate as shafts turn, by path.
     """
 
     values: Values
@@ -45,6 +47,7 @@ class SettledStart(NamedTuple):
     moved: bool = False
     declared: str = ""
     given: float = 0.0
+    pulsations: Mapping[str, float] = {}
 
 
 class Search:
@@ -159,6 +162,11 @@ class Search:
             moved,
             self._declared,
             self._given,
+            {
+                f"{name}.{output}": swing
+                for name, (output, swing) in self._answering.pulsations.items()
+                if swing
+            },
         )
 
     def _balanced(

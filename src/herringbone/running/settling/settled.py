@@ -15,6 +15,9 @@ _EVENLY, _TWICE = 0.05, 2.0
 _TELLING, _SURELY = 0.16, 1.28
 """Shortest trial that tells of later times [s]; that tells what does not die out at all."""
 _EVER = 100.0
+_TURNS = 1.0
+"""Turns in a quarter from which on what still changes is known not to pulsate with them; slower
+shafts do not come to that."""
 _ALIKE = 0.8
 """Ratio of rates of decay that two trials tell of what dies out evenly: quarters shorter than a
 period of an oscillation tell different ones."""
@@ -33,6 +36,9 @@ class Settled(NamedTuple):
         peak: (m,) largest values.
         moved: change of that output [its unit].
         before: `change` of that output over the quarter before.
+        turns: of the slowest shaft in the last quarter; infinite if none turns.
+        pulsation: name of the output that pulsates most as shafts turn, and half of its range [its
+            unit]; then all the others are of means over a period.
     """
 
     outputs: np.ndarray
@@ -42,6 +48,8 @@ class Settled(NamedTuple):
     peak: np.ndarray
     moved: float
     before: float
+    turns: float = math.inf
+    pulsation: tuple[str, float] = ("", 0.0)
 
 
 def why_not(found: Settled, before: Settled, duration: float, unit: str) -> str:
@@ -64,7 +72,8 @@ def why_not(found: Settled, before: Settled, duration: float, unit: str) -> str:
         rate = 4.0 * found.moved / duration
         return f"goes on evenly, by {rate:.3g} {unit} a second, in the steady motion: it integrates"
     times = _time_to_settle(before, 0.5 * duration), _time_to_settle(found, duration)
-    if min(times) <= _TWICE * LONGEST:
+    may_pulsate = found.turns < _TURNS <= found.turns * LONGEST / duration
+    if min(times) <= _TWICE * LONGEST or may_pulsate:
         return ""
     rates = _decay(before, 0.5 * duration), _decay(found, duration)
     if min(times) <= _EVER * LONGEST and min(rates) < _ALIKE * max(rates):

@@ -12,7 +12,9 @@ from herringbone.cosim.signature.trial import Trial
 from herringbone.cosim.starting.approached_part import begin_at
 from herringbone.cosim.structure.approach import Approach, SteadyInput
 from herringbone.cosim.structure.rates import rate_of
+from herringbone.running.settling.judged import Path, come_to
 from herringbone.running.settling.settled import CHANGES, LONGEST, Settled, dies_out, why_not
+from herringbone.running.settling.turn_means import POINT, shafts_of
 
 _MOST_STEPS = 8192
 """Of a trial; longer ones take longer steps."""
@@ -107,9 +109,11 @@ class Stranger:
         trial = Trial(part, self.inputs, self.outputs, -given.duration, LONGEST)
         try:
             direct = self.feedthrough()
-            first = -0.5 * given.duration
-            every = max(1, int(-0.5 * first / given.step / _WATCHED))
-            seen: list[list[np.ndarray]] = [[], []]
+            first, shafts = -0.5 * given.duration, shafts_of(given)
+            angle = given.step * max((abs(shaft.speed) for shaft in shafts), default=0.0)
+            every = int(-0.5 * first / given.step / _WATCHED)
+            every = max(1, min(every, int(POINT / angle)) if angle else every)
+            times, seen = list[float](), list[np.ndarray]()
             peak = np.zeros(len(self.outputs))
             for number, (t, h) in enumerate(given.steps()):
                 held = given.held(t, h)
@@ -118,32 +122,19 @@ class Stranger:
                 peak = np.maximum(peak, np.abs(trial.values()))
                 if t >= first and number % every == 0:
                     end = given.held(t + h, 0.0)
-                    seen[t >= 0.5 * first].append(trial.values() + direct @ (end - held))
+                    times.append(t + h)
+                    seen.append(trial.values() + direct @ (end - held))
             trial.set(given.at_end())
             last = trial.values()
         finally:
             trial.close()
-        path = np.array(seen[1] or [last])  # of a part that answers at once, in one step
-        if not np.isfinite(path).all():
+        if not np.isfinite([*seen, last]).all():
             raise NoSettledStartError(f"{self.name}: its outputs are not finite")
-        changes = self._changes(path, path)
-        if not changes.size:
+        if not self._watched:
             return Settled(last, 0.0, 0.0, "", peak, 0.0, 0.0)
-        line = np.linspace(-1.0, 1.0, len(path))
-        bends = self._changes(path - np.outer(line, line @ path / (line @ line)), path)
-        worst = int(np.argmax(changes))
-        before = self._changes(np.array(seen[0]), path)[worst] if seen[0] else 0.0
-        number = self._watched[worst]
-        moved = np.ptp(path[:, number])
-        return Settled(
-            last, float(changes[worst]), float(bends.max()), self.outputs[number], peak,
-            float(moved), float(before),
-        )  # fmt: skip
-
-    def _changes(self, seen: np.ndarray, path: np.ndarray) -> np.ndarray:
-        """Changes of the watched outputs, over the largest values of their units on a path."""
-        sizes = self.sizes(np.abs(path).max(axis=0))
-        return np.ptp(seen, axis=0)[self._watched] / sizes[self._watched]
+        path = Path(np.array(times), np.array(seen or [last]), last)
+        names = [self.outputs[k] for k in self._watched]
+        return come_to(given, path, names, self._watched, self.sizes)._replace(peak=peak)
 
     def refuse_hopeless(self, found: Settled, before: Settled | None, duration: float) -> None:
         """Raise NeverSettlesError of what will not settle in time, see `why_not`.

@@ -78,3 +78,12 @@ def test_what_dies_out_in_two_ways_is_not_settled_by_the_first():
     answer = lambda t: 1.0 + np.exp(-200.0 * t) + 0.1 * np.exp(-10.0 * t)  # noqa: E731
     for duration in (0.02, 0.04, 0.08, 0.16, 0.32):
         assert not dies_out(trial(answer, duration), trial(answer, 0.5 * duration), duration)
+
+
+@pytest.mark.parametrize(("speed", "refused"), [(0.0, True), (2.0, True), (60.0, False)])
+def test_what_may_pulsate_with_a_shaft_is_given_a_turn(speed, refused):
+    """Not a shaft that makes no turn in a quarter of the longest trial: 2 rad/s, 0.4 turns."""
+    answer = lambda t: 1.0 + 0.1 * np.exp(-0.01 * t) * np.cos(200.0 * np.pi * t)  # noqa: E731
+    turns = 0.04 * speed / (2.0 * np.pi) if speed else np.inf
+    trials = (trial(answer, T)._replace(turns=turns) for T in (0.16, 0.08))
+    assert bool(why_not(*trials, 0.16, "N.m")) == refused

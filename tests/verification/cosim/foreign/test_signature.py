@@ -5,6 +5,7 @@
 
 import tomllib
 
+import numpy as np
 import pytest
 from support.foreign.kinds import KINDS
 from support.parts.fakes import OK, CallbackPart
@@ -163,19 +164,40 @@ def test_check_prints_it(kinds, capsys):
 
 
 class Brake(CallbackPart):
-    """60 N m against the speed, whose sign decides."""
+    """A torque against the speed, by a law (function of the speed in rad/s)."""
 
-    def __init__(self):
+    def __init__(self, law):
         super().__init__("brake", ["flange.w"], ["flange.tau"], nodes=False, state=False)
+        self.law = law
 
     def step(self, t, h):
-        speed = self["flange.w"]
-        self["flange.tau"] = -60.0 * ((speed > 0.0) - (speed < 0.0))
+        self["flange.tau"] = -self.law(self["flange.w"])
         return OK
 
 
-def test_a_law_that_jumps_is_unknown_and_the_jump_is_why():
+def stribeck(speed):
+    return np.sign(speed) * (60.0 + 30.0 * np.exp(-abs(speed) / 1e-4)) + 5.0 * speed
+
+
+@pytest.mark.parametrize(
+    ("law", "jump"), [(lambda w: 60.0 * np.sign(w), 60), (stribeck, 90)], ids=["sign", "stribeck"]
+)
+def test_a_law_that_jumps_is_unknown_and_the_jump_is_why(law, jump):
     """The slope grows with the inverse of the change; that it answers too little is not told."""
-    it = signature_of(Brake(), Brake, 1e-4)
+    it = signature_of(Brake(law), lambda: Brake(law), 1e-4)
     assert it.kind is Kind.UNKNOWN and it.memory is Answer.NO
-    assert [note for note in it.notes if "it is not linear there" in note] == list(it.notes)
+    assert list(it.notes) == [
+        f"flange.tau jumps by {jump} as flange.w leaves 0, however little: it is not linear there"
+    ]
+
+
+def test_a_steep_law_is_no_jump():
+    """As far as it is as steep as trials see: 60 N m over 0.5 rad/s, and over 0.5 mrad/s."""
+    gentle, steep = (lambda w, at=at: 60.0 * np.tanh(w / at) for at in (0.5, 5e-4))
+    it = signature_of(Brake(gentle), lambda: Brake(gentle), 1e-4)
+    assert it.kind is Kind.ELEMENT
+    assert it.feedthrough[0, 0] == pytest.approx(-60.0 / 0.5, rel=1e-6)
+    it = signature_of(Brake(steep), lambda: Brake(steep), 1e-4)
+    assert it.kind is Kind.UNKNOWN
+    (note,) = it.notes
+    assert "lies between" in note and "jumps" not in note

@@ -15,6 +15,9 @@ SAME = 0.1
 """Feedthrough at two amplitudes, over the larger one, that is one number."""
 _ALIKE = 0.2
 """Difference of two responses, over them, that are taken for one."""
+_TINY, _KEEPS = 2.0**-20, 0.5
+"""A change over the largest one, and what is left of the answer to that: it jumps. A law that rises
+over more than twice the tiny change, as tanh(w / w_0) with a w_0 of that size, leaves less."""
 
 
 def feedthrough_of(
@@ -28,8 +31,36 @@ def feedthrough_of(
         found_by = [_column(lab, number, float(change), tick) for change in changes]
         by_change = np.array([response.feedthrough for response in found_by])
         slopes[:, number] = found_by[0].slope
-        feedthrough[:, number] = _one_number(by_change, name, lab.outputs, largest[number], found)
+        one = _one_number(by_change)
+        bent = np.flatnonzero(np.isnan(one) & ~np.isnan(by_change).any(axis=0))
+        feedthrough[:, number] = one
+        found.bent |= set(map(int, bent))
+        jumps = _jumps(lab, number, largest[number]) if bent.size else np.zeros(0)
+        for row in bent:
+            low, high = by_change[:, row].min(), by_change[:, row].max()
+            found.note(
+                f"{lab.outputs[row]} jumps by {abs(jumps[row]):.3g} as {name} leaves "
+                f"{lab.start[number]:.6g}, however little: it is not linear there"
+                if jumps[row]
+                else f"d({lab.outputs[row]})/d({name}) lies between {low:.3g} and {high:.3g} for "
+                f"changes up to {largest[number]:.3g}: it is not linear there"
+            )
     return feedthrough, slopes
+
+
+def _jumps(lab: Laboratory, number: int, largest: float) -> np.ndarray:
+    """(m,) by how much outputs jump as an input leaves its start, to the worse side; 0: not."""
+    found = np.zeros(len(lab.outputs))
+    for change in (largest, -largest):
+        answers = []
+        for share in (1.0, _TINY):
+            changed = lab.start.copy()
+            changed[number] += share * change
+            answers.append(lab.run([changed], lab.step)[-1] - lab.at_rest(lab.step))
+        whole, tiny = answers
+        jumped = (np.abs(tiny) >= _KEEPS * np.abs(whole)) & (np.abs(tiny) > np.abs(found))
+        found = np.where(jumped, tiny, found)
+    return found
 
 
 def _column(lab: Laboratory, number: int, change: float, tick: float) -> Response:
@@ -68,30 +99,14 @@ def _responses(
     return np.array(found), ROUNDING * size / abs(change)
 
 
-def _one_number(
-    by_change: np.ndarray, name: str, outputs: tuple[str, ...], largest: float, found: Findings
-) -> np.ndarray:
-    """(m,) D of one input where amplitudes and signs agree; else it is unknown, with a line.
+def _one_number(by_change: np.ndarray) -> np.ndarray:
+    """(m,) D of one input where amplitudes and signs agree; else it is unknown.
 
     Args:
         by_change: (4, m) at the larger change, plus and minus, and at the smaller one.
-        name: of the input.
-        outputs: names.
-        largest: change of the input.
-        found: takes the notes.
     """
-    small = by_change[2:].mean(axis=0)
-    scale = np.abs(by_change).max(axis=0)
-    spread = np.ptp(by_change, axis=0)
-    for row in np.flatnonzero(spread > SAME * scale):
-        low, high = by_change[:, row].min(), by_change[:, row].max()
-        found.bent.add(int(row))
-        found.note(
-            f"d({outputs[row]})/d({name}) lies between {low:.3g} and {high:.3g} for changes up to "
-            f"{largest:.3g}: it is not linear there"
-        )
-        small[row] = np.nan
-    return small
+    spread, scale = np.ptp(by_change, axis=0), np.abs(by_change).max(axis=0)
+    return np.where(spread > SAME * scale, np.nan, by_change[2:].mean(axis=0))
 
 
 def runs_on(feedthrough: np.ndarray, slopes: np.ndarray) -> tuple[int, ...]:
