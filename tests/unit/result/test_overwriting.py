@@ -19,7 +19,8 @@ from herringbone.result.folder.store import Store
 from herringbone.running.output.claim import Claim, FolderLock, claimed
 from herringbone.running.reporting.report import write_report
 
-RUN = RunFile(State.RUNNING, (), {})
+RUN = RunFile(State.RUNNING, (), {}, asked={"t_end": "1"})
+"""A run that a command asked for: those of scripts cannot be resumed."""
 
 
 def settled(folder, key="k", state=State.COMPLETE):
