@@ -125,8 +125,9 @@ def _of_step(
     lines: list[str] = []
     for algorithm in algorithms or default_algorithms():
         try:
-            verdicts += step_verdicts(of.system, [algorithm], step, show, of.strangers)
-            lines += verdicts[-1].lines()
+            found = step_verdicts(of.system, [algorithm], step, show, of.strangers)
+            verdicts += found
+            lines += [line for verdict in found for line in verdict.lines()]
         except ParameterError as error:
             if algorithms:
                 raise

@@ -7,6 +7,7 @@ import pytest
 from support.parts.fakes import FakePart
 
 import herringbone as hb
+from herringbone.cosim.signature import Kind
 from herringbone.cosim.starting.speeds import unlike_inside
 from herringbone.cosim.structure.system import PartSpec, System
 
@@ -44,11 +45,14 @@ def test_shafts_that_turn_alike(speeds):
     assert not lines_of(*speeds)
 
 
-def lines_inside(inside, outside, unit="rad/s"):
+def lines_inside(inside, outside, unit="rad/s", kind=Kind.STATES_AND_FEEDTHROUGH):
     """Of a part with a rotor behind its shaft, on a gear (both speeds [rad/s])."""
     part = FakePart("fly").real("flange.phi", "input", "rad").real("flange.w", "input", unit)
     part.signature = SimpleNamespace(
-        inputs=("flange.phi", "flange.w"), rate_inputs=(1, -1), speeds=(inside, math.nan)
+        inputs=("flange.phi", "flange.w"),
+        rate_inputs=(1, -1),
+        speeds=(inside, math.nan),
+        kind=kind,
     )
     gear = FakePart("gear").real("w", "output", "rad/s")
     gear.get = lambda names: [outside]
@@ -71,3 +75,7 @@ def test_a_rotor_at_rest_inside_a_part_meets_a_gear_that_turns():
 def test_a_rotor_that_turns_alike_or_is_not_known(inside):
     assert not lines_inside(inside, FAST)
     assert not lines_inside(0.0, FAST, unit="1/min")
+
+
+def test_nothing_turns_behind_a_part_without_memory():
+    assert not lines_inside(0.0, FAST, kind=Kind.ELEMENT)

@@ -25,7 +25,7 @@ from herringbone.analysis.stability.surrogates.stand_in import StandIn
 from herringbone.core import Instance
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
-from herringbone.cosim.structure.rates import motion_at, motion_of_force
+from herringbone.cosim.structure.rates import motion_at, motion_of_force, rate_of
 
 TWO_MASS_RULES: dict[str, Callable[[float], float]] = {
     "jacobi:order=0": lambda zeta: 4.0 * zeta,
@@ -218,13 +218,16 @@ def _response(
 def _velocities(network: Network, p: int, along: Direction) -> Iterator[tuple[str, float]]:
     """Outputs of a body that tell the element how fast it moves along a bond, and their shares.
 
-    By connection: a foreign body has names of its own.
+    By connection: a foreign body has names of its own. One that gives its place alone has a rate.
     """
     for force, x in along.forces:
-        taken = motion_at(force.output)[1]
-        for c in network.connections:
-            if (c.source, c.target, c.input) == (p, force.source, taken) and force.target == p:
-                yield c.output, x
+        place, velocity = motion_at(force.output)
+        given = {c.input: c.output for c in network.inputs(force.source) if c.source == p}
+        found = given.get(velocity)
+        if found is None and place in given:
+            found = rate_of(network.parts[p], given[place])
+        if found is not None and force.target == p:
+            yield found, x
 
 
 def _surrogate_response(

@@ -94,9 +94,9 @@ def _shares(
         force = velocity = 0.0
         size = sum(d * d for _, d in direction.forces)
         for c, d in direction.forces:
-            back = feeding[c.source, motion_at(c.output)[1]]
             force += d * outputs[c.source][names[c.source].index(c.output)] / size
-            velocity += d * outputs[back.source][names[back.source].index(back.output)]
+            if back := feeding.get((c.source, motion_at(c.output)[1])):
+                velocity += d * outputs[back.source][names[back.source].index(back.output)]
         found.append(abs(force) * abs(velocity))
     return np.array(found) / max(sum(found), 1e-300)
 

@@ -11,7 +11,8 @@ one, both of h^5, so that the values at nodes are of order 4. With means it is t
 h^3, so that they are of order 2.
 
 An input with a rate that the part adds to it inside a piece of length l, by r t from its start or
-by -r (l - t) to its end, is given as what is left after that, by the same moments.
+by -r (l - t) to its end, is given as what is left after that, by the same moments. A part without
+memory is given what it sees at the end of the piece; one that adds r t has added r l there.
 """
 
 import numpy as np
@@ -40,7 +41,10 @@ def hold(memory: np.ndarray, begin: float, end: float, step: float) -> None:
         i = order[k]
         at = i * STRIDE
         if part.at_end:
-            held[i] = held[count + i] = evaluate(coefficients, at, part.degree, end)
+            value = evaluate(coefficients, at, part.degree, end)
+            if rate[i] >= 0 and place[i] == _START:
+                value -= length * held[rate[i]]
+            held[i] = held[count + i] = value
             continue
         even, odd = _moments(coefficients, at, part.degree, begin, end)
         if rate[i] >= 0 and place[i] == _START:

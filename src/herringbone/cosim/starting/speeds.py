@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 from herringbone.core.part import Part
+from herringbone.cosim.signature import Kind
 from herringbone.cosim.starting.approached_part import ApproachedPart
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
@@ -50,12 +51,13 @@ def unlike_inside(network: Network) -> Iterator[str]:
     """A line for each part whose own shaft joins a turning one to what turns unlike behind it.
 
     Args:
-        network: its parts are initialised; those with a signature were tried at their start.
+        network: its parts are initialised; those with a signature were tried at their start. A play
+            that is open there is none of its elements, and has no shaft behind it.
     """
     for target in network.bodies:
         part = network.parts[target]
         signature = getattr(part, "signature", None)
-        if signature is None or _was_stepped(part):
+        if signature is None or signature.kind is Kind.ELEMENT or _was_stepped(part):
             continue
         fed = {c.input: c for c in network.inputs(target)}
         for number, inside in enumerate(signature.speeds):

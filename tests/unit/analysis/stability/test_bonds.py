@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from herringbone.analysis.stability.bonds import bond_table, highest_frequency
+from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.stability.linear_parts import linear_network
 from herringbone.core.places.paths import component_folder
+from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.running.start import started
@@ -94,17 +96,33 @@ def test_blocks_are_left_as_they_were(rig):
         assert np.array_equal(instance.block[:mutable], block[:mutable])
 
 
-def test_two_rotors_in_closed_form():
+def two_rotors(*wires):
     parts = [
         PartSpec("left", component="load_motor", values={"inertia": 0.2}),
         PartSpec("right", component="load_motor", values={"inertia": 0.3}),
         PartSpec("coupling", component="shaft_coupling", values={"stiffness": 1e5, "damping": 4.0}),
     ]
-    wires = (("left.flange", "coupling.flange_a"), ("right.flange", "coupling.flange_b"))
-    (bond,) = bond_table(*linear_network(System("two_rotors", "", tuple(parts), wires)))
+    return System("two_rotors", "", tuple(parts), (*wires, ("right.flange", "coupling.flange_b")))
+
+
+def test_two_rotors_in_closed_form():
+    system = two_rotors(("left.flange", "coupling.flange_a"))
+    (bond,) = bond_table(*linear_network(system))
     w = np.sqrt(1e5 / 0.12)
     assert bond.masses == pytest.approx((0.2, 0.3))
     assert bond.stiffness == pytest.approx(1e5)
     assert bond.frequency == pytest.approx(w)
     assert bond.damping_ratio == pytest.approx(4.0 * w / 2e5)
     assert bond.limits["jacobi:order=0"] == pytest.approx(4.0 * bond.damping_ratio / w)
+
+
+def test_a_body_that_gives_its_angle_alone_has_its_mass():
+    """Its rate tells how it answers, though nobody takes it; why a step is unstable is told."""
+    system = two_rotors(
+        ("left.flange.phi", "coupling.flange_a.phi"), ("left.flange.tau", "coupling.flange_a.tau")
+    )
+    (bond,) = bond_table(*linear_network(system))
+    assert bond.masses == pytest.approx((0.2, 0.3))
+    assert bond.frequency == pytest.approx(np.sqrt(1e5 / 0.12))
+    why = diagnose(system, Jacobi(2), 3.0 / bond.frequency)
+    assert why.growth > 0.0

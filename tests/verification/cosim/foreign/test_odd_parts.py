@@ -6,11 +6,14 @@ Found by a critic who had the claim and not the code.
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from support.parts.fakes import OK, CallbackPart
 
+from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Kind
 from herringbone.cosim.signature.rotation import InputRule
+from herringbone.cosim.signature.trial import Trial
 from herringbone.running.foreign.trials import signature_of
 
 
@@ -147,3 +150,39 @@ def test_outputs_in_single_precision_are_not_said_to_answer_nothing():
     assert found.notes == (
         "trials tell nothing of its outputs: none is of double precision (odd.y is a Float32)",
     )
+
+
+class Spring(Odd):
+    """Spring and damper without memory, which turns its angle on with w inside a step."""
+
+    STIFFNESS, DAMPING = 4e4, 20.0
+
+    def __init__(self):
+        super().__init__(("odd.phi", "odd.w"))
+
+    def step(self, t, h):
+        self["odd.phi"] += h * self["odd.w"]
+        return super().step(t, h)
+
+    def out(self):
+        self["odd.y"] = self.STIFFNESS * self["odd.phi"] + self.DAMPING * self["odd.w"]
+
+
+@pytest.mark.parametrize("degree", [0, 1, 3])
+def test_an_angle_that_an_element_turns_on_ends_where_it_is_wanted(degree):
+    """At each node the law of angle and speed there: a step too far was an error of first order."""
+    found, h = signature(Spring), 1e-3
+    assert (found.kind, found.given[0]) == (Kind.ELEMENT, InputRule.START)
+    part = NodalPart(Spring(), found)
+    part.set("interface_degree", degree)
+    nodes = ["", *(f".node{k}" for k in range(1, degree + 1))]
+    inputs = [f"{name}{node}" for name in ("odd.phi", "odd.w") for node in nodes]
+    outputs = [f"odd.y{node}" for node in nodes[1:] or nodes]
+    trial = Trial(part, inputs, outputs)
+    c = np.linspace(0.0, 1.0, degree + 1)
+    phi, w = 0.3 + 0.1 * c - 0.2 * c**2, (0.1 - 0.4 * c) / h
+    trial.set(np.concatenate([phi, w]))
+    trial.step(h)
+    wanted = Spring.STIFFNESS * phi + Spring.DAMPING * w
+    assert trial.values() == pytest.approx(wanted[min(1, degree) :], rel=1e-12)
+    trial.close()
