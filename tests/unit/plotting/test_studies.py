@@ -154,7 +154,7 @@ def test_folder_of_a_study_gets_what_its_points_allow(table, tmp_path):
     assert files == []
     assert missing == [
         "no levels.png: 1 point and no number that is varied: there is no curve; give several "
-        "values, such as --speed 500:3000:26"
+        "values, such as speed=[100.0, 200.0, 300.0]"
     ]
     with pytest.raises(ParameterError, match="not several numbers; there are: speed"):
         one = shipped(table, torque=200.0, zeta=0.02, backlash=1e-4)
