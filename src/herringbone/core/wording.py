@@ -19,6 +19,16 @@ def words_of_commands() -> Iterator[None]:
         _as_options[0] = before
 
 
+def speaks_commands() -> bool:
+    """True where messages name options of the command line."""
+    return _as_options[0]
+
+
+def several_values(name: str) -> str:
+    """How several values of an option are given, by an example."""
+    return f"--{name} 500:3000:26" if _as_options[0] else f"{name}=[100.0, 200.0, 300.0]"
+
+
 def option(name: str, value: float | str | bool | None = None) -> str:
     """An option, such as `--record-step 1e-4`, or the argument, `record_step=1e-4`.
 

@@ -8,6 +8,7 @@ from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import EquilibriumError
 from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity
+from herringbone.core.wording import option, setting
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.remembered_answers import start_of_known
 from herringbone.running.settling.flanks import loaded_settled_start
@@ -111,12 +112,13 @@ def _settled(system: System, step: float) -> tuple[System, tuple[str, ...]]:
     if found.moved:
         lines.append(
             f"{fastest} starts at {found.values[fastest]:.6g} rad/s, where torques balance "
-            f"(given: {found.given:.6g} rad/s); --start {Start.REST} takes what is given"
+            f"(given: {found.given:.6g} rad/s); {option('start', Start.REST.value)} takes what is "
+            "given"
         )
     elif found.declared:
         lines.append(
             f"{fastest} starts at {found.given:.6g} rad/s, as {found.declared} declares, and "
-            f"nothing else says; --set {fastest}=... does"
+            f"nothing else says; {setting(fastest, '...')} does"
         )
     parts = tuple(replace(part, approach=found.approaches.get(part.name)) for part in system.parts)
     return replace(system, parts=parts).with_values(found.values), tuple(lines)
@@ -132,7 +134,7 @@ def _unset(system: System, speed: str) -> str:
     instance, name = system.split(speed)
     if system.part(instance).values.get(name) is not None:
         return ""
-    return f", which nothing sets; --set {speed}=... does"
+    return f", which nothing sets; {setting(speed, '...')} does"
 
 
 def _ramps(system: System, time: float) -> Values:

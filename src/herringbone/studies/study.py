@@ -8,6 +8,7 @@ from random import Random
 
 from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.core import ParameterError
+from herringbone.core.wording import several_values
 
 SET_POINTS = {SPEED: "rad/s", TORQUE: "N.m"}
 """Parameters that address what a system declares as its set points, and their SI units."""
@@ -74,7 +75,9 @@ def grid(axes: Mapping[str, Sequence[Value]]) -> Study:
         ParameterError: an axis is empty, or a value stands twice.
     """
     if not axes:
-        raise ParameterError("a study takes at least one parameter, such as --speed 500:3000:26")
+        raise ParameterError(
+            f"a study takes at least one parameter, such as {several_values('speed')}"
+        )
     if empty := [name for name, values in axes.items() if not len(values)]:
         raise ParameterError(f"{empty[0]}: it has no values")
     fast = SPEED if SPEED in axes else list(axes)[-1]

@@ -7,6 +7,7 @@ import pytest
 from support.parts.fakes import FakePart
 
 import herringbone as hb
+from herringbone.core.wording import words_of_commands
 from herringbone.cosim.signature import Kind
 from herringbone.cosim.starting.speeds import unlike_inside
 from herringbone.cosim.structure.system import PartSpec, System
@@ -48,6 +49,7 @@ def test_shafts_that_turn_alike(speeds):
 def lines_inside(inside, outside, unit="rad/s", kind=Kind.STATES_AND_FEEDTHROUGH):
     """Of a part with a rotor behind its shaft, on a gear (both speeds [rad/s])."""
     part = FakePart("fly").real("flange.phi", "input", "rad").real("flange.w", "input", unit)
+    part.real("rotor.speed", "parameter", "rad/s").real("inertia", "parameter", "kg.m2")
     part.signature = SimpleNamespace(
         inputs=("flange.phi", "flange.w"),
         rate_inputs=(1, -1),
@@ -67,8 +69,11 @@ def test_a_rotor_at_rest_inside_a_part_meets_a_gear_that_turns():
     (line,) = lines_inside(0.01, FAST)
     assert line.startswith("fly: what is behind its shaft at flange.phi turns at 0 rad/s")
     assert "gear.w = 104.7 rad/s" in line
-    assert "--set fly.NAME=104.7" in line
-    assert "--set gear.NAME=0" in line
+    assert '(values={"fly.rotor.speed": 104.7})' in line
+    assert "0 rad/s, by a parameter of gear, which declares none in rad/s" in line
+    with words_of_commands():
+        (line,) = lines_inside(0.01, FAST)
+    assert "(--set fly.rotor.speed=104.7)" in line
 
 
 @pytest.mark.parametrize("inside", [FAST, 0.97 * FAST, math.nan])

@@ -12,6 +12,7 @@ from herringbone.plotting.studies.levels import levels, peaks
 from herringbone.plotting.studies.maps import is_map, level_map
 from herringbone.plotting.studies.pictures import _uncertain, write_study_pictures
 from herringbone.plotting.studies.sensitivities import band, changes, tornado
+from herringbone.plotting.studies.steady_state import short_names
 from herringbone.plotting.studies.table import Points
 from herringbone.plotting.studies.waterfall import waterfall
 
@@ -154,7 +155,7 @@ def test_folder_of_a_study_gets_what_its_points_allow(table, tmp_path):
     assert files == []
     assert missing == [
         "no levels.png: 1 point and no number that is varied: there is no curve; give several "
-        "values, such as --speed 500:3000:26"
+        "values, such as speed=[100.0, 200.0, 300.0]"
     ]
     with pytest.raises(ParameterError, match="not several numbers; there are: speed"):
         one = shipped(table, torque=200.0, zeta=0.02, backlash=1e-4)
@@ -238,3 +239,8 @@ def test_curves_are_named_so_that_no_two_parameters_are_meant():
     assert label == "wheel.stiffness 3, backlash 5"
     assert points.headline("Levels") == "Levels"
     assert Points(table, {}, "rig").headline("Levels") == "Levels: rig"
+
+
+def test_signals_of_two_gearboxes_have_names_of_their_own():
+    columns = ["one.bearings.left.f_y", "two.bearings.left.f_y", "one.bearings.right.f_y"]
+    assert short_names(columns) == ["one: left.f_y", "two: left.f_y", "right.f_y"]

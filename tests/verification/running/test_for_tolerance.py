@@ -73,7 +73,7 @@ def test_records_that_a_scene_would_have_are_told(rig, given, told):
     for tolerance, apart in ((1e-3, "50 us"), (2e-3, "100 us")):
         asked = Asked("native", tolerance=tolerance, record_step=given)
         _, asked = for_tolerance(rig.system, rig.scene, asked, searched=False)
-        said = f"records are {apart} apart; --record-step 2e-05 gives the scene's"
+        said = f"records are {apart} apart; record_step=2e-05 gives the scene's"
         assert (said in asked.notes[0]) == told
 
 

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 _FEWEST = 4
 _SAME = 1e-9
+_ALIKE, _APART = 0.02, 0.3
+"""Share by which levels may differ, and difference from which on phases make it: 0.3 rad."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -128,18 +130,31 @@ def compare(first: Result | str | Path, second: Result | str | Path, *patterns: 
     notes += _only(ours, theirs, shared)
     units = theirs.result.units
     found = differences(*values, shared, groups)
+    of_groups = table_of_groups(ours, theirs, groups, found, values, shared)
     orders, why = table_of_orders(ours, theirs, groups)
     return Comparison(
         ours,
         theirs,
         float(times[0]),
         float(times[-1]),
-        table_of_groups(ours, theirs, groups, found, values, shared),
+        of_groups,
         table_of_columns(ours, theirs, shared, values, units),
         orders,
         changed_parameters(ours.result, theirs.result),
         changed_resources(ours.result, theirs.result),
-        (*notes, *why),
+        (*notes, *why, *_of_phase(of_groups)),
+    )
+
+
+def _of_phase(groups: pd.DataFrame) -> tuple[str, ...]:
+    """A line if groups have the same levels, and differ all the same."""
+    alike = (groups["level_first"] / groups["level_second"] - 1.0).abs() < _ALIKE
+    names = [str(name) for name in groups["group"][alike & (groups["difference"] > _APART)]]
+    if not names:
+        return ()
+    return (
+        f"{', '.join(names)}: levels are alike, and differences are of phase: the teeth of both "
+        "runs are at other angles at the same time; compare levels and orders",
     )
 
 

@@ -14,6 +14,7 @@ from herringbone.analysis.figures.operating_point import run_mesh_frequency, ste
 from herringbone.analysis.figures.spectra import hann_weight
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.declaring.units import R_MIN
+from herringbone.core.wording import option
 from herringbone.result.result import TIME, Result
 
 _MUCH = 0.05
@@ -41,7 +42,7 @@ def unsettled(result: Result) -> list[str]:
     if moving := moving_speed(result):
         return [
             f"not settled: {moving}, and levels are those of all these speeds; use a longer "
-            "--t-end, or look at orders over speed (herringbone plot)"
+            f"{option('t_end')}, or look at orders over speed (herringbone plot)"
         ]
     found = changes(result)
     if not found:
@@ -62,7 +63,7 @@ def _advice(result: Result) -> str:
     """What shows a settled motion: a longer run, or all teeth where each quarter has others."""
     hunt, time = longest_hunt(result), result.data[TIME].to_numpy()
     if hunt is None or hunt[1] <= 0.25 * (time[-1] - time[0]):
-        return "use a longer --t-end"
+        return f"use a longer {option('t_end')}"
     meshes, seconds = hunt
     return (
         f"its teeth differ, and all have met after {meshes} mesh periods only, {seconds:.3g} s: "

@@ -5,12 +5,14 @@ import numpy as np
 from herringbone.analysis.set_points import SPEED, TORQUE, addressed
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaring.roles import Quantity
+from herringbone.core.wording import option, speaks_commands
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 
 STANDSTILL = 1e-6
 """Largest speed of a part that stands [rad/s]; a shaft that springs back exceeds it by far."""
-_UNITS = {SPEED: "R/MIN", TORQUE: "N.M"}
+_UNITS = {SPEED: "RAD/S", TORQUE: "N.M"}
+"""Of arguments; the option of the speed takes r/min."""
 
 
 def stands_still(result: Result) -> bool:
@@ -30,7 +32,8 @@ def what_to_set(system: System) -> str:
     options, others = [], []
     for name, unit in _UNITS.items():
         try:
-            options.append(f"--{name} {unit} (sets {addressed(system, name)})")
+            taken = "R/MIN" if speaks_commands() and name == SPEED else unit
+            options.append(f"{option(name)} {taken} (sets {addressed(system, name)})")
         except (ParameterError, StructureError) as error:
             others.append(str(error))
     what = f"give {' and '.join(options)}" if options else others[0]

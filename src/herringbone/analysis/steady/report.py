@@ -107,7 +107,7 @@ def _of_run(state: SettledState) -> list[str]:
     lines = [f"Steady state of {state.system_name}: {found}, in a run as parts are foreign"]
     if math.isfinite(state.speed):
         known = math.isfinite(state.ending.rest)
-        meshes = f", repeats after {state.meshes} mesh periods ({state.period:.6g} s)"
+        meshes = f", repeats after {_counted(state.meshes)} ({state.period:.6g} s)"
         lines.append(f"  speed {state.speed * R_MIN:.6g} r/min{meshes if known else ''}")
     if math.isfinite(state.error):
         lines.append(
@@ -127,7 +127,7 @@ def _of_balance(state: SteadyState) -> list[str]:
     )
     lines = [
         f"Steady state of {state.system_name}: {found}",
-        f"  speed {state.speed * R_MIN:.6g} r/min, repeats after {state.meshes} mesh periods "
+        f"  speed {state.speed * R_MIN:.6g} r/min, repeats after {_counted(state.meshes)} "
         f"({state.period:.6g} s)",
         f"  error {state.errors.worst:.2g} of the alternating part (asked {state.tolerance:g}), "
         f"measured{_after(state)} at twice the {state.orbit.places} points of the period",
@@ -158,6 +158,10 @@ def _of_balance(state: SteadyState) -> list[str]:
             " out"
         )
     return lines
+
+
+def _counted(meshes: int) -> str:
+    return f"{meshes} mesh period{'s' * (meshes != 1)}"
 
 
 def _after(state: SteadyState) -> str:

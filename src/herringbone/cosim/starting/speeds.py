@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 from herringbone.core.part import Part
+from herringbone.core.wording import setting
 from herringbone.cosim.signature import Kind
 from herringbone.cosim.starting.approached_part import ApproachedPart
 from herringbone.cosim.structure.connection import Connection
@@ -17,6 +18,8 @@ _UNLIKE = 0.05
 _SLOW = 1.0
 """Speeds below are rest [rad/s]."""
 _OPPOSITE = 1e-6
+_SHOWN = 3
+"""Parameters that a line names."""
 
 
 def unlike_speeds(network: Network) -> Iterator[str]:
@@ -71,9 +74,18 @@ def unlike_inside(network: Network) -> Iterator[str]:
                     f"{part.name}: what is behind its shaft at {signature.inputs[number]} turns at "
                     f"{_round(inside)} {_SPEED} at the start, and meets {source.name}."
                     f"{fed[name].output} = {outside:.5g} {_SPEED}, a jump; set the start value of "
-                    f"its speed (--set {part.name}.NAME={outside:.5g}), or that of what it meets "
-                    f"(--set {source.name}.NAME={_round(inside)})"
+                    f"its speed ({_to_set(part, f'{outside:.5g}')}), or that of what it meets "
+                    f"({_to_set(source, _round(inside))})"
                 )
+
+
+def _to_set(part: Part, speed: str) -> str:
+    """How a part is told its speed [rad/s]: by the parameters in that unit that it declares."""
+    known = [v.name for v in part.variables.values() if v.causality == "parameter"]
+    named = [name for name in known if part.variables[name].unit == _SPEED]
+    if named:
+        return " or ".join(setting(f"{part.name}.{name}", speed) for name in named[:_SHOWN])
+    return f"{speed} {_SPEED}, by a parameter of {part.name}, which declares none in {_SPEED}"
 
 
 def _was_stepped(part: Part) -> bool:

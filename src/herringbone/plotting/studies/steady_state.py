@@ -1,5 +1,7 @@
 """A steady state: its signals over one period, its orders, and its Floquet multipliers."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -66,7 +68,7 @@ def _signals(axes: Axes, state: PeriodicMotion, group: str) -> None:
     along, axis = turn * state.period * 1e3, "time [ms]"
     if state.meshes:
         along, axis = turn * state.meshes, "mesh periods"
-    labels = [".".join(name.split(".")[-_WORDS:]) for name in loudest]
+    labels = short_names(loudest)
     for label, signal in zip(labels, values, strict=True):
         axes.plot(along, factor * signal, label=label)
     more = f", the first {_MESHES} of {state.meshes} mesh periods" if share < 1.0 else ""
@@ -80,6 +82,15 @@ def _signals(axes: Axes, state: PeriodicMotion, group: str) -> None:
     axes.set_xlabel(axis)
     axes.set_ylabel(f"[{unit}]")
     legend(axes, _LOUDEST)
+
+
+def short_names(columns: Sequence[str]) -> list[str]:
+    """The last words of names; where these are alike, with the first one in front."""
+    short = [".".join(name.split(".")[-_WORDS:]) for name in columns]
+    return [
+        f"{name.partition('.')[0]}: {ending}" if short.count(ending) > 1 else ending
+        for name, ending in zip(columns, short, strict=True)
+    ]
 
 
 def _orders(axes: Axes, state: PeriodicMotion, group: str) -> None:

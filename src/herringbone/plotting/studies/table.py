@@ -18,6 +18,7 @@ import pandas as pd
 from herringbone.analysis.figures.radiated_power import RADIATED
 from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.core import ParameterError
+from herringbone.core.wording import several_values
 from herringbone.plotting.style import scaled_unit
 
 OUTCOME, MESH = "outcome", "mesh_frequency"
@@ -90,7 +91,7 @@ class Points:
             if not known:
                 raise ParameterError(
                     f"{count} point{'s' * (count != 1)} and no number that is varied: there is no "
-                    "curve; give several values, such as --speed 500:3000:26"
+                    f"curve; give several values, such as {several_values('speed')}"
                 )
             raise ParameterError(
                 f"parameter {wanted}: it has not several numbers; there are: {known}"

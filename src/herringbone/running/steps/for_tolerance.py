@@ -17,6 +17,7 @@ from dataclasses import replace
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.core.declaring.roles import Role
+from herringbone.core.wording import option
 from herringbone.cosim.algorithms import LI, tolerance_of, with_tolerance
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
@@ -45,7 +46,7 @@ def by_default(system: System, asked: Asked) -> Asked:
         return asked
     if foreign:
         why = f"no tolerance by default: with {', '.join(foreign)} it takes several runs"
-        line = f"{why}; --tolerance {DEFAULT_TOLERANCE:g} asks for it"
+        line = f"{why}; {option('tolerance', DEFAULT_TOLERANCE)} asks for it"
         return replace(asked, notes=(*asked.notes, line))
     return replace(asked, tolerance=DEFAULT_TOLERANCE, by_default=True)
 
@@ -95,6 +96,7 @@ def _fewer_records(scene: Scene, asked: Asked, tolerance: float) -> str:
     if asked.record_step is not None or asked.step is not None or scene.record_step >= apart:
         return ""
     return (
-        f"records are {1e6 * apart:g} us apart; --record-step {scene.record_step:g} gives the "
-        f"scene's, and takes longer; what is faster than {0.5 / apart:g} Hz shows folded in spectra"
+        f"records are {1e6 * apart:g} us apart; {option('record_step', scene.record_step)} gives "
+        f"the scene's, and takes longer; what is faster than {0.5 / apart:g} Hz shows folded in "
+        "spectra"
     )

@@ -53,6 +53,16 @@ def test_differences_levels_and_orders(first, second):
     assert (found.begin, found.end) == (0.0, 0.2)
 
 
+def test_a_difference_of_phase_alone_is_told(second):
+    """The same forces a quarter of a mesh period later: 90 deg at f_m, sqrt(2) times the level."""
+    columns = second.channel(FORCES)
+    later = np.roll(second.data[columns].to_numpy(), round(0.25 / 450.0 / 20e-6), axis=0)
+    shifted = replace(second, data=second.data.assign(**dict(zip(columns, later.T, strict=True))))
+    notes = hb.compare(shifted, second).notes
+    assert [n for n in notes if n.startswith("bearing_force: levels are alike, and differences")]
+    assert not [n for n in hb.compare(second, second).notes if "levels are alike" in n]
+
+
 def test_what_differs_is_told_apart(first, second, tmp_path):
     """Start values by iteration differ in the last digits, tables of the cache in comments."""
     tables = []

@@ -65,7 +65,7 @@ def test_teeth_that_differ_meet_again_after_long(tmp_path, quarter, all_met):
         info = replace(result.info, resources=resources, parameters=parameters)
         found = replace(result, data=pd.DataFrame(data), info=info, channels={"force": (force,)})
         (line,) = unsettled(found)
-        assert line.endswith("use a longer --t-end") == (not told)
+        assert line.endswith("use a longer t_end") == (not told)
         assert ("all have met after 81 mesh periods only, 0.18 s" in line) == told
 
 

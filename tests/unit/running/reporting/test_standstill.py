@@ -9,6 +9,7 @@ from support.result import make_result
 
 from herringbone.analysis.figures.standstill import STANDSTILL, stands_still, what_to_set
 from herringbone.core.declaring.roles import Quantity
+from herringbone.core.wording import words_of_commands
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.plotting.runs.pictures import write_pictures
 from herringbone.running.reporting.physical import physical_results
@@ -83,8 +84,8 @@ def test_the_note_tells_what_to_set(still):
     found = judged(still, read_system("test_rig"), None)
     assert found.budget == ()
     assert found.info.notes == (
-        "nothing turns, figures are those of parts at rest: give --speed R/MIN (sets "
-        "bench_controller.speed_setpoint) and --torque N.M (sets bench_controller.torque_setpoint)",
+        "nothing turns, figures are those of parts at rest: give speed RAD/S (sets "
+        "bench_controller.speed_setpoint) and torque N.M (sets bench_controller.torque_setpoint)",
     )
 
 
@@ -97,7 +98,8 @@ def test_the_note_tells_what_to_set(still):
     ],
 )
 def test_what_to_set_in_other_systems(system, said):
-    assert said in what_to_set(read_system(system))
+    with words_of_commands():
+        assert said in what_to_set(read_system(system))
 
 
 def test_a_run_that_turns_is_judged_as_before():
