@@ -30,7 +30,13 @@ from herringbone.cosim.layouts.layout import Chunk
 from herringbone.cosim.layouts.measured import channel_outputs, measured_signals
 from herringbone.cosim.layouts.nodes import Buffers, Control, new_buffers
 from herringbone.cosim.layouts.starts import Starts
-from herringbone.cosim.loops.adaptive_step.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
+from herringbone.cosim.loops.adaptive_step.ladder import (
+    FIRST,
+    FIRST_TOLERANCE,
+    RUNGS,
+    TICKS,
+    dividing_rung,
+)
 from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT, run_adaptive
 from herringbone.cosim.loops.adaptive_step.step_error import (
     LARGEST,
@@ -90,7 +96,7 @@ class PreparedAdaptive(PreparedNodes):
         self._by_rung = RungJacobians()
         self._adaptive: Adaptive | None = None
         self._record = GrowingRecord(0)
-        self._tick = 0.0
+        self._tick, self._every = 0.0, 0
         self._kept, self._missing = tolerance, ""
         self.inner_step = 0.0
         self.channels: Mapping[str, Sequence[str]] = {}
@@ -105,7 +111,8 @@ class PreparedAdaptive(PreparedNodes):
     def grid(self, grid: Grid) -> Grid:
         """The same end and records in ticks; the grid's step is the largest."""
         self._tick, self._last = grid.step / TICKS, grid.count * TICKS
-        return Grid(self._tick, self._last, grid.every * TICKS)
+        self._every = grid.every * TICKS
+        return Grid(self._tick, self._last, self._every)
 
     def record(self, grid: Grid, columns: int, window: int | None = None) -> GrowingRecord:
         """Rows as the steps come, or at equal distances."""
@@ -164,7 +171,7 @@ class PreparedAdaptive(PreparedNodes):
             tolerance=self.tolerance,
             last=self._last,
             memory=MEMORY * max(TICKS * self._tick, LARGEST_STEP),
-            inner_step=self.inner_step,
+            inner_ticks=self.inner_step / self._tick,
             times=self._record.row_times,
             room=room_for(measured.output.size),
         )
@@ -249,9 +256,11 @@ class PreparedAdaptive(PreparedNodes):
 
     def _first_rung(self) -> int:
         """About the one that will be used, so that its Jacobian serves."""
-        order = ORDER[self.nodes.degree]
-        ticks = RUNGS[FIRST] * (self.tolerance / FIRST_TOLERANCE) ** (1.0 / order)
-        return max(0, int(np.searchsorted(RUNGS, ticks, side="right")) - 1)
+        p = self.nodes.degree
+        ticks = TICKS * FIRST[p] * (self.tolerance / FIRST_TOLERANCE) ** (1.0 / ORDER[p])
+        rung = max(0, int(np.searchsorted(RUNGS, ticks, side="right")) - 1)
+        left = min(self._every or self._last, self._last)
+        return dividing_rung(np.array(RUNGS), rung, left) if self._every else rung
 
     def _correct(self, buffers: Buffers, adaptive: Adaptive, done: int, tick: float) -> int:
         """Correction of the rung in use; a status of the loop."""

@@ -35,8 +35,10 @@ class Adaptive(NamedTuple):
         moments, covered: of the signals, and times: see `step_error.update_sizes`.
         room: see `step_error.room_for`.
         memory: time over which signals are taken about a straight line [s].
-        inner_step: longest of the bodies [s]; 0 if they make none.
-        sharpness: (1,) largest error over ticks^order of the last steps.
+        inner_ticks: longest inner step of the bodies in ticks; 0 if they make none.
+        error: (2,) of the present step by coupling and inner steps.
+        sharpness: (2,) these over their powers of ticks, of the last steps.
+        now, counts: (2,) room: these of the present step; what the next one is chosen by.
         state: (10,), see `WANTED`.
         before: (p + 1, unknowns): values at the nodes of the last step.
         times: of the rows [s].
@@ -58,8 +60,11 @@ class Adaptive(NamedTuple):
     covered: np.ndarray
     room: np.ndarray
     memory: float
-    inner_step: float
+    inner_ticks: float
+    error: np.ndarray
     sharpness: np.ndarray
+    now: np.ndarray
+    counts: np.ndarray
     state: np.ndarray
     before: np.ndarray
     times: np.ndarray
@@ -73,7 +78,7 @@ def new_adaptive(
     tolerance: float,
     last: int,
     memory: float,
-    inner_step: float,
+    inner_ticks: float,
     times: np.ndarray,
     room: np.ndarray,
 ) -> Adaptive:
@@ -81,7 +86,7 @@ def new_adaptive(
 
     Args:
         nodes: the layout of passes.
-        rungs, measured, tolerance, last, memory, inner_step, times, room: see `Adaptive`.
+        rungs, measured, tolerance, last, memory, inner_ticks, times, room: see `Adaptive`.
     """
     unknowns, groups = nodes.unknown.size, measured.members.size
     size = nodes.degree * unknowns
@@ -102,8 +107,11 @@ def new_adaptive(
         covered=np.zeros(4),
         room=room,
         memory=memory,
-        inner_step=inner_step,
-        sharpness=np.zeros(1),
+        inner_ticks=inner_ticks,
+        error=np.zeros(2),
+        sharpness=np.zeros(2),
+        now=np.zeros(2),
+        counts=np.zeros(2),
         state=np.zeros(TAKEN_BACK + 1, dtype=np.int64),
         before=np.zeros((nodes.degree + 1, unknowns)),
         times=times,

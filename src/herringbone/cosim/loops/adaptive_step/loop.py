@@ -30,12 +30,14 @@ from herringbone.cosim.loops.adaptive_step.ladder import dividing_rung, fitting_
 from herringbone.cosim.loops.adaptive_step.step_choice import (
     TOO_MUCH,
     continued,
+    inner_steps,
     next_rung,
     too_much,
 )
 from herringbone.cosim.loops.adaptive_step.step_error import (
+    COUPLING,
+    INNER_STEPS,
     KNOWN,
-    ORDER,
     error_so_far,
     step_error,
     update_sizes,
@@ -131,18 +133,16 @@ def _try(
     if failed < 0:
         failed, _ = converge(layout, nodes, buffers, adaptive.corrections[rung], control, t, h)
     if failed >= 0:
+        adaptive.error[COUPLING] = np.inf
         return failed, np.inf
-    inner_steps = np.inf
-    if adaptive.inner_step > 0.0:
-        inner_steps = max(1.0, np.ceil(h / (nodes.degree * adaptive.inner_step) - 1e-9))
     sized = adaptive.covered[0] >= KNOWN * adaptive.memory
     groups = adaptive.measured.members.size if sized else adaptive.measured.units
-    error, culprit = step_error(
+    coupling, inner, culprit = step_error(
         nodes, buffers, adaptive.measured, adaptive.moments, adaptive.squares, adaptive.room,
-        groups, known, inner_steps,
+        groups, known, inner_steps(adaptive, rung, nodes.degree),
     )  # fmt: skip
-    state[CULPRIT] = culprit
-    return -1, error
+    adaptive.error[COUPLING], adaptive.error[INNER_STEPS], state[CULPRIT] = coupling, inner, culprit
+    return -1, np.hypot(coupling, inner)
 
 
 @inlined
@@ -163,7 +163,7 @@ def _complete(
     failed = _record(layout, adaptive, buffers.history, chunk, done + ticks)
     if failed >= 0:
         return PART_FAILED, ticks, failed
-    wanted = next_rung(adaptive, rung, error, ORDER[nodes.degree])
+    wanted = next_rung(adaptive, rung, nodes.degree)
     state[WANTED] = min(wanted, rung) if state[TAKEN_BACK] else wanted
     state[TAKEN_BACK] = 0
     missed = not error <= TOO_MUCH * adaptive.tolerance
@@ -193,10 +193,10 @@ def _macro_step(
     smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), left) < rung
     if failed >= 0 and not (smaller and buffers.counts[2] == _DISCARDED):
         return PART_FAILED, 0, failed
-    if smaller and too_much(adaptive, rung, error, ORDER[nodes.degree]):
+    if smaller and too_much(adaptive, rung, error, nodes.degree):
         failed = _take_back(layout, nodes, buffers)
         adaptive.rejected[rung] += 1
-        wanted = next_rung(adaptive, rung, error, ORDER[nodes.degree])
+        wanted = next_rung(adaptive, rung, nodes.degree)
         state[WANTED], state[TAKEN_BACK] = min(rung - 1, wanted), 1
         return PART_FAILED if failed >= 0 else DONE, 0, failed
     corrections = buffers.counts[1] - before
