@@ -83,7 +83,7 @@ def for_tolerance(
     return found.system, replace(
         asked,
         algorithm=algorithm,
-        inner_step=found.longest,
+        inner=found.stepping,
         part_tolerance=SHARE * tolerance,
         notes=(*asked.notes, *filter(None, (line,)), *found.lines),
     )

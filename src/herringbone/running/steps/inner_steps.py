@@ -13,7 +13,7 @@ Where the system's start is no load, or foreign parts take part, each gearbox is
 itself under a torque.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -30,6 +30,7 @@ from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.declaring.variable import Causality
 from herringbone.core.places.part_path import PartPath, in_groups
 from herringbone.cosim.algorithms import LI
+from herringbone.cosim.layouts.inner_stepping import InnerStepping
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System
 from herringbone.running.content import contents_of_system
@@ -37,7 +38,7 @@ from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.running.pairs.open_flanges import loaded
 from herringbone.running.steps.cheapest_degree import cheapest_degree
 
-_known: Remembered[tuple[dict[str, float], tuple[str, ...], int]] = Remembered(256)
+_known: Remembered["_Chosen"] = Remembered(256)
 _LI = LI()
 _RULE = _LI.accurate_step or 0.0
 _BY_DEGREE = {4: 0.7}
@@ -70,15 +71,21 @@ class InnerSteps(NamedTuple):
 
     Attributes:
         system: with them.
-        longest: of gear pairs, or of all parts where there is none [s]; 0 if it is not known.
+        stepping: the longest of gear pairs, or of all parts where there is none; gear pairs may
+            take longer ones while the run goes on, up to what is stable, where teeth do not part.
         degree: of the forces' polynomials.
         lines: what they are, and why where that is not the tolerance.
     """
 
     system: System
-    longest: float
+    stepping: InnerStepping
     degree: int
     lines: tuple[str, ...] = ()
+
+    @property
+    def longest(self) -> float:
+        """See `InnerStepping` [s]."""
+        return self.stepping.longest
 
 
 def with_inner_steps(
@@ -98,19 +105,40 @@ def with_inner_steps(
         kicked: the run does not begin in equilibrium, so that teeth may part for a while.
         apart: time between rows [s].
     """
-    key = (system.name, *contents_of_system(system), tolerance, degree, kicked, apart)
-    chosen, lines, taken = _known(key, lambda: _chosen(system, tolerance, degree, kicked, apart))
-    return InnerSteps(system.with_values(chosen), _longest(system, chosen), taken, lines)
+    asked = (tolerance, degree, kicked, apart, *system.channels.items())
+    key = (system.name, *contents_of_system(system), *asked)
+    found = _known(key, lambda: _chosen(system, tolerance, degree, kicked, apart))
+    stepping = InnerStepping(_longest(system, found.steps), *_longer(system, found))
+    return InnerSteps(system.with_values(found.steps), stepping, found.degree, found.lines)
+
+
+class _Chosen(NamedTuple):
+    """Inner steps [s] by path, the longest that they may get, degree and lines."""
+
+    steps: dict[str, float]
+    most: dict[str, float]
+    degree: int
+    lines: tuple[str, ...]
+
+
+def _longer(system: System, found: _Chosen) -> tuple[Mapping[str, float], float]:
+    """Steps of gear pairs by path, if all are chosen, and how many times longer they may be."""
+    pairs = anatomy(system).with_role(Role.GEAR_PAIR)
+    paths = [path for part, path in _paths(system) if part in pairs]
+    if not found.most or not all(path in found.steps for path in paths):
+        return {}, 1.0
+    steps = {path: found.steps[path] for path in paths}
+    return steps, min((found.most[path] / step for path, step in steps.items()), default=1.0)
 
 
 def _chosen(
     system: System, tolerance: float, degree: int | None, kicked: bool, apart: float
-) -> tuple[dict[str, float], tuple[str, ...], int]:
-    """Inner steps [s] by path, lines and the degree; see `with_inner_steps`."""
+) -> _Chosen:
+    """See `with_inner_steps`."""
     found = _linear(system)
     bond = highest_frequency(found.network, found.members) if found else 0.0
     if found is None or not bond:
-        return {}, (), degree or cheapest_degree(None, tolerance, apart)
+        return _Chosen({}, {}, degree or cheapest_degree(None, tolerance, apart), ())
     part = found.open or kicked
     degree = degree or cheapest_degree(None if part else bond, tolerance, apart)
     macro = _RULE / bond * (tolerance / RULE_ERROR) ** (1.0 / _LI.convergence_order)
@@ -129,7 +157,8 @@ def _chosen(
         own = "as it swings by itself" if follows < 1.0 else "the longest that is stable"
         reason = why if step == wanted else own
         said.append(f"{path} {1e6 * step:.3g} us" + f" ({reason})" * bool(reason))
-    return chosen, (f"inner steps: {', '.join(said)}",) if said else (), degree
+    lines = (f"inner steps: {', '.join(said)}",) if said else ()
+    return _Chosen(chosen, {} if part else stable, degree, lines)
 
 
 def _gears_are_recorded(system: System) -> bool:
