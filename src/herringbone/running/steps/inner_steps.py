@@ -157,8 +157,11 @@ def _chosen(
         own = "as it swings by itself" if follows < 1.0 else "the longest that is stable"
         reason = why if step == wanted else own
         said.append(f"{path} {1e6 * step:.3g} us" + f" ({reason})" * bool(reason))
-    lines = (f"inner steps: {', '.join(said)}",) if said else ()
-    return _Chosen(chosen, {} if part else stable, degree, lines)
+    found_steps = _Chosen(chosen, {} if part else stable, degree, ())
+    _, times = _longer(system, found_steps)
+    more = f"; those of gear pairs up to {times:.3g} times longer where they err little"
+    line = f"inner steps: {', '.join(said)}" + more * (times > 1.0)
+    return found_steps._replace(lines=(line,) if said else ())
 
 
 def _gears_are_recorded(system: System) -> bool:
