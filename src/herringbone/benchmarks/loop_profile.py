@@ -125,7 +125,7 @@ def _cases() -> Iterator[_Case]:
     yield _Case(own, system, fixed, NO_INNER, None, fixed.start_step, scene.record_step)
     for name in (SCENE, PARTING):
         system, scene, _ = prepared(SYSTEM, name, Wishes())
-        asked = Asked("native", tolerance=TOLERANCE)
+        asked = Asked("native", tolerance=TOLERANCE, record_step=RECORD_STEP)
         suited, asked = for_tolerance(system, scene, asked, searched=False)
         if not isinstance(asked.algorithm, LI):
             raise HerringboneError(f"{asked.algorithm}: there is no profile of its steps")
