@@ -19,6 +19,7 @@ from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.algorithms.adaptive import PreparedAdaptive
 from herringbone.cosim.algorithms.iterated import PreparedNodes
+from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping
 from herringbone.cosim.loops import repeated
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.run import Run
@@ -98,7 +99,7 @@ class _Case(NamedTuple):
     name: str
     system: System
     algorithm: LI
-    inner_step: float
+    inner: InnerStepping
     tolerance: float | None
     step: float
     every: float
@@ -121,17 +122,17 @@ def _cases() -> Iterator[_Case]:
     system, scene, _ = prepared(SYSTEM, SCENE, Wishes())
     fixed = LI()
     own = f"scene '{SCENE}', {fixed} at {1e6 * fixed.start_step:g} us"
-    yield _Case(own, system, fixed, 0.0, None, fixed.start_step, scene.record_step)
+    yield _Case(own, system, fixed, NO_INNER, None, fixed.start_step, scene.record_step)
     for name in (SCENE, PARTING):
         system, scene, _ = prepared(SYSTEM, name, Wishes())
-        asked = Asked("native", tolerance=TOLERANCE)
+        asked = Asked("native", tolerance=TOLERANCE, record_step=RECORD_STEP)
         suited, asked = for_tolerance(system, scene, asked, searched=False)
         if not isinstance(asked.algorithm, LI):
             raise HerringboneError(f"{asked.algorithm}: there is no profile of its steps")
         longest = asked.algorithm.start_step
         step = suited_step(suited, scene, asked.algorithm, longest, None, RECORD_STEP)
         yield _Case(
-            f"scene '{name}', {asked.algorithm}", suited, asked.algorithm, asked.inner_step,
+            f"scene '{name}', {asked.algorithm}", suited, asked.algorithm, asked.inner,
             asked.part_tolerance, step, RECORD_STEP,
         )  # fmt: skip
 
@@ -140,7 +141,7 @@ def _begun(case: _Case, parts: Sequence[Part], t_end: float) -> Run:
     grid: Grid = make_grid(t_end, case.step, case.every)
     run, _ = ready(
         case.system, parts, case.algorithm, grid,
-        inner_step=case.inner_step, tolerance=case.tolerance,
+        inner=case.inner, tolerance=case.tolerance,
     )  # fmt: skip
     return run
 

@@ -10,6 +10,7 @@ from herringbone.core.part import Part
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
 from herringbone.cosim.energy.watch import EnergyWatch
+from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping
 from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
@@ -84,7 +85,7 @@ def simulate(
     *,
     bond_frequency: float | None = None,
     slow: Mapping[str, int] | None = None,
-    inner_step: float = 0.0,
+    inner: InnerStepping = NO_INNER,
     tolerance: float | None = None,
     streaming: Streaming | None = None,
 ) -> Recording:
@@ -102,8 +103,7 @@ def simulate(
             five of its periods.
         slow: bodies that step once in several macro steps, and in how many; the step is shortened
             so that the end is a communication point of all.
-        inner_step: the longest of the bodies' own integration [s], of which an adaptive step takes
-            account; 0 if there is none, or unknown.
+        inner: the bodies' own integration, of which an adaptive step takes account.
         tolerance: that parts are told [1]; None: none.
         streaming: where rows go while the run goes on; None: they stay in memory.
 
@@ -114,7 +114,7 @@ def simulate(
     """
     run, loop = ready(
         system, parts, algorithm, grid, bond_frequency=bond_frequency, slow=slow,
-        inner_step=inner_step, tolerance=tolerance, streaming=streaming,
+        inner=inner, tolerance=tolerance, streaming=streaming,
     )  # fmt: skip
     return run.go(progress) if loop is None else run.go_around(loop, str(algorithm), progress)
 
@@ -127,7 +127,7 @@ def ready(
     *,
     bond_frequency: float | None = None,
     slow: Mapping[str, int] | None = None,
-    inner_step: float = 0.0,
+    inner: InnerStepping = NO_INNER,
     tolerance: float | None = None,
     streaming: Streaming | None = None,
 ) -> tuple[Run, AlgebraicLoop | None]:
@@ -138,7 +138,7 @@ def ready(
         check_multirate(algorithm)
         grid = _common(grid, math.lcm(*network.slow.values()))
     prepared = algorithm.prepare(network)
-    prepared.suit(tolerance, inner_step, system.channels)
+    prepared.suit(tolerance, inner, system.channels)
     for part, degree in zip(parts, prepared.degree, strict=True):
         if INTERFACE_DEGREE in part.variables:
             part.set(INTERFACE_DEGREE, float(degree))

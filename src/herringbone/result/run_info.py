@@ -16,7 +16,7 @@ class RunInfo:
         system, scene, model: names; `model` is the list of components by instance.
         t_end: end that was asked for [s].
         communication_step, record_step: [s]; means, if the step is adaptive.
-        micro_steps: longest internal step by instance [s].
+        micro_steps: longest internal step by instance [s], at the start.
         algorithm: as on the command line.
         fmu: "native", "python" or "in-process".
         macro_steps, passes, rollbacks, wall_s: cost of the loop.

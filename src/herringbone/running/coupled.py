@@ -125,7 +125,7 @@ def _coupled(
                 tell,
                 bond_frequency=way.bond,
                 slow=asked.slow,
-                inner_step=asked.inner_step,
+                inner=asked.inner,
                 tolerance=asked.part_tolerance,
                 streaming=streaming,
             )

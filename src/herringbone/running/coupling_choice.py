@@ -11,6 +11,7 @@ from herringbone.core import HerringboneError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi, choose_algorithm, start_step
+from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping
 from herringbone.cosim.structure.system import System
 from herringbone.result.budget import BudgetRow
 from herringbone.running.foreign.foreign_parts import understood
@@ -40,7 +41,7 @@ class Asked:
         all_points: keep all communication points beside the result.
         warn: say whether the step is stable.
         notes: lines that are known already.
-        inner_step: longest of the own parts [s], of which an adaptive step takes account.
+        inner: steps of the own parts, of which an adaptive step takes account.
         part_tolerance: that parts are told; None: none.
         fuse: condense all parts of this package into one, which is coupled with the others.
         record: of a fused run, patterns of outputs, or groups of channels, that are recorded.
@@ -61,7 +62,7 @@ class Asked:
     all_points: bool = False
     warn: bool = True
     notes: Sequence[str] = field(default=())
-    inner_step: float = 0.0
+    inner: InnerStepping = NO_INNER
     part_tolerance: float | None = None
     fuse: bool = False
     record: tuple[str, ...] = ()

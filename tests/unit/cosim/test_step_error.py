@@ -49,9 +49,10 @@ def error(force, degree, *, held=0, known=9, scale=1.0, inner_steps=np.inf, squa
     measured = measured_signals(nodes, np.array([held], np.int64))
     squares = np.zeros((2, 1)) if squares is None else squares
     moments = sized([scale])
-    return step_error(
+    coupling, inner, _ = step_error(
         nodes, buffers, measured, moments, squares, room_for(1), 1, known, inner_steps
-    )[0]
+    )
+    return math.hypot(coupling, inner)
 
 
 def sized(sizes):

@@ -23,7 +23,8 @@ from herringbone.running.api import run
 def test_the_rig_keeps_the_tolerance(scene, tolerance):
     """With records that leave steps their room, so that the tolerance decides."""
     result = run(
-        "test_rig", scene=scene, tolerance=tolerance, t_end=0.02, record_step=1e-4,
+        "test_rig", scene=scene, tolerance=tolerance, t_end=0.02,
+        record_step=2e-4 if tolerance > 1e-3 else 1e-4,
         fmu="in-process", reference=True,
     )  # fmt: skip
     assert result.outcome.completed
@@ -135,15 +136,15 @@ def test_rows_are_equally_far_apart(largest, every):
 
 
 def test_steps_between_rows_divide_what_is_left():
-    """800 ticks: 640 divides them not, 400 does; of 35 that are left 5 and 7 are, 5 is a rung."""
+    """960 ticks: 720 divides them not, 480 does; of 35 that are left 5 and 7 are, 5 is a rung."""
     rungs = np.array(RUNGS, dtype=np.int64)
 
     def found(wanted, left):
         return RUNGS[dividing_rung(rungs, RUNGS.index(wanted), left)]
 
-    assert [found(w, 800) for w in (800, 640, 320, 125, 13)] == [800, 400, 200, 100, 10]
-    assert found(640, 640) == 640
-    assert [found(w, 35) for w in (800, 5)] == [5, 5]
+    assert [found(w, 960) for w in (960, 720, 400, 240, 16)] == [960, 480, 320, 240, 16]
+    assert found(720, 720) == 720
+    assert [found(w, 35) for w in (960, 5)] == [5, 5]
     assert found(4, 35) == 4  # none divides it: steps add up to the end
 
 
@@ -165,7 +166,7 @@ def test_few_jacobians():
 def test_steps_beyond_the_limit_are_found_and_taken_back():
     """After the motion has died out any step errs little, and beyond h w = 6 it grows again."""
     problem = TwoMass(w=1.0, zeta=0.02)
-    recording = go(problem, t_end=4000.0, largest=10.0)
+    recording = go(problem, t_end=4000.0, largest=11.0)
     steps = np.diff(recording.time)
     assert steps.max() > 6.0
     s1, _, s2, _ = columns(recording, MOTION).T

@@ -169,7 +169,7 @@ def _mesh_parameters() -> list[Variable]:
         p("ramp_turns", "1", "pinion turns in which errors, deviations, unbalance come in", 1.0,
           minimum=0),
         p("micro_step", "s", "longest Runge-Kutta step", 2.5e-6, minimum=1e-9, maximum=1e-4,
-          quantity=Quantity.MICRO_STEP),
+          tunable=True, quantity=Quantity.MICRO_STEP),
     ]  # fmt: skip
 
 

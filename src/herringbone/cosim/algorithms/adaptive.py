@@ -26,12 +26,25 @@ from herringbone.cosim.layouts.adaptive import (
     Adaptive,
     new_adaptive,
 )
+from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping, lengthened
 from herringbone.cosim.layouts.layout import Chunk
 from herringbone.cosim.layouts.measured import channel_outputs, measured_signals
 from herringbone.cosim.layouts.nodes import Buffers, Control, new_buffers
 from herringbone.cosim.layouts.starts import Starts
-from herringbone.cosim.loops.adaptive_step.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
+from herringbone.cosim.loops.adaptive_step.ladder import (
+    FIRST,
+    FIRST_TOLERANCE,
+    RUNGS,
+    TICKS,
+    dividing_rung,
+)
 from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT, run_adaptive
+from herringbone.cosim.loops.adaptive_step.step_choice import (
+    AIM,
+    AIM_BETWEEN_ROWS,
+    SAVED,
+    SAVED_BETWEEN_ROWS,
+)
 from herringbone.cosim.loops.adaptive_step.step_error import (
     LARGEST,
     ORDER,
@@ -68,8 +81,7 @@ class PreparedAdaptive(PreparedNodes):
         tolerance: relative error that is asked for.
 
     Attributes:
-        inner_step: longest of the bodies' own integration [s], of which the error takes account; 0
-            if there is none, or unknown.
+        inner: the bodies' own integration, of which the error takes account.
         channels: patterns of the recorded outputs whose errors count, by group.
     """
 
@@ -90,22 +102,23 @@ class PreparedAdaptive(PreparedNodes):
         self._by_rung = RungJacobians()
         self._adaptive: Adaptive | None = None
         self._record = GrowingRecord(0)
-        self._tick = 0.0
+        self._tick, self._every = 0.0, 0
         self._kept, self._missing = tolerance, ""
-        self.inner_step = 0.0
+        self.inner: InnerStepping = NO_INNER
         self.channels: Mapping[str, Sequence[str]] = {}
 
     def suit(
-        self, tolerance: float | None, inner_step: float, channels: Mapping[str, Sequence[str]]
+        self, tolerance: float | None, inner: InnerStepping, channels: Mapping[str, Sequence[str]]
     ) -> None:
         """Measure steps by inner steps and channels, too; the tolerance is the algorithm's own."""
         del tolerance
-        self.inner_step, self.channels = inner_step, channels
+        self.inner, self.channels = inner, channels
 
     def grid(self, grid: Grid) -> Grid:
         """The same end and records in ticks; the grid's step is the largest."""
         self._tick, self._last = grid.step / TICKS, grid.count * TICKS
-        return Grid(self._tick, self._last, grid.every * TICKS)
+        self._every = grid.every * TICKS
+        return Grid(self._tick, self._last, self._every)
 
     def record(self, grid: Grid, columns: int, window: int | None = None) -> GrowingRecord:
         """Rows as the steps come, or at equal distances."""
@@ -164,7 +177,9 @@ class PreparedAdaptive(PreparedNodes):
             tolerance=self.tolerance,
             last=self._last,
             memory=MEMORY * max(TICKS * self._tick, LARGEST_STEP),
-            inner_step=self.inner_step,
+            aim=AIM_BETWEEN_ROWS if self._every else AIM,
+            saved=SAVED_BETWEEN_ROWS if self._every else SAVED,
+            inner=lengthened(self.network, self.inner, self._tick),
             times=self._record.row_times,
             room=room_for(measured.output.size),
         )
@@ -192,6 +207,7 @@ class PreparedAdaptive(PreparedNodes):
     def saved(self) -> Arrays:
         """See `PreparedRun`; rows and their times are the record's."""
         found = super().saved() | arrays_of("adaptive", self._adaptive)
+        found |= arrays_of("inner", self._adaptive and self._adaptive.inner)
         del found["adaptive.times"]
         texts = {"missing": self._missing, "culprit": self.culprit}
         return (
@@ -205,6 +221,7 @@ class PreparedAdaptive(PreparedNodes):
         """See `PreparedRun`."""
         super().put(saved)
         put_arrays("adaptive", self._adaptive, saved)
+        put_arrays("inner", self._adaptive and self._adaptive.inner, saved)
         self._by_rung.put(saved)
         self._missing, self.culprit = (saved[n].tobytes().decode() for n in ("missing", "culprit"))
         self._kept = float(saved["kept"])
@@ -249,9 +266,11 @@ class PreparedAdaptive(PreparedNodes):
 
     def _first_rung(self) -> int:
         """About the one that will be used, so that its Jacobian serves."""
-        order = ORDER[self.nodes.degree]
-        ticks = RUNGS[FIRST] * (self.tolerance / FIRST_TOLERANCE) ** (1.0 / order)
-        return max(0, int(np.searchsorted(RUNGS, ticks, side="right")) - 1)
+        p = self.nodes.degree
+        ticks = TICKS * FIRST[p] * (self.tolerance / FIRST_TOLERANCE) ** (1.0 / ORDER[p])
+        rung = max(0, int(np.searchsorted(RUNGS, ticks, side="right")) - 1)
+        left = min(self._every or self._last, self._last)
+        return dividing_rung(np.array(RUNGS), rung, left) if self._every else rung
 
     def _correct(self, buffers: Buffers, adaptive: Adaptive, done: int, tick: float) -> int:
         """Correction of the rung in use; a status of the loop."""

@@ -16,6 +16,7 @@ from herringbone.cosim.algorithms.jacobian import (
 from herringbone.cosim.algorithms.node_signals import fmi_derivatives, node_degrees
 from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
+from herringbone.cosim.layouts.inner_stepping import InnerStepping
 from herringbone.cosim.layouts.layout import Chunk, build_layout, connected_outputs
 from herringbone.cosim.layouts.nodes import (
     Buffers,
@@ -103,10 +104,10 @@ class PreparedNodes(PreparedRun):
         self.problem = ""
 
     def suit(
-        self, tolerance: float | None, inner_step: float, channels: Mapping[str, Sequence[str]]
+        self, tolerance: float | None, inner: InnerStepping, channels: Mapping[str, Sequence[str]]
     ) -> None:
         """Let corrections leave a share of the tolerance that parts are told."""
-        del inner_step, channels
+        del inner, channels
         if tolerance:
             self.rest = max(REST, REST_SHARE * tolerance)
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
+from herringbone.cosim.layouts.inner_stepping import InnerStepping
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import NodeLayout
 from herringbone.cosim.layouts.starts import Starts
@@ -40,16 +41,16 @@ class PreparedRun(ABC):
     predicts: bool = False
 
     def suit(
-        self, tolerance: float | None, inner_step: float, channels: Mapping[str, Sequence[str]]
+        self, tolerance: float | None, inner: InnerStepping, channels: Mapping[str, Sequence[str]]
     ) -> None:
         """Take account of what the run is asked for; most algorithms need none of it.
 
         Args:
             tolerance: that parts are told [1]; None: none.
-            inner_step: longest of the parts' own integration [s]; 0 if there is none, or unknown.
+            inner: the parts' own integration.
             channels: patterns of the recorded outputs whose errors count, by group.
         """
-        del tolerance, inner_step, channels
+        del tolerance, inner, channels
 
     def correct_evenly(self) -> None:  # noqa: B027 (most algorithms do)
         """Take as many corrections in every step, for differences of steps of linear parts.

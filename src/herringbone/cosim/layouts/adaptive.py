@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.cosim.layouts.inner_stepping import Lengthened
 from herringbone.cosim.layouts.measured import Measured
 from herringbone.cosim.layouts.nodes import NodeLayout
 
@@ -35,8 +36,12 @@ class Adaptive(NamedTuple):
         moments, covered: of the signals, and times: see `step_error.update_sizes`.
         room: see `step_error.room_for`.
         memory: time over which signals are taken about a straight line [s].
-        inner_step: longest of the bodies [s]; 0 if they make none.
-        sharpness: (1,) largest error over ticks^order of the last steps.
+        aim, saved: see `step_choice.AIM`.
+        inner: steps of the bodies.
+        error: (2,) of the present step by coupling and inner steps.
+        sharpness: (2,) these over their powers of ticks, of the last steps.
+        counts: (2,) these by which the next step is chosen.
+        ones: (2,) 1.
         state: (10,), see `WANTED`.
         before: (p + 1, unknowns): values at the nodes of the last step.
         times: of the rows [s].
@@ -58,8 +63,13 @@ class Adaptive(NamedTuple):
     covered: np.ndarray
     room: np.ndarray
     memory: float
-    inner_step: float
+    aim: float
+    saved: float
+    inner: Lengthened
+    error: np.ndarray
     sharpness: np.ndarray
+    counts: np.ndarray
+    ones: np.ndarray
     state: np.ndarray
     before: np.ndarray
     times: np.ndarray
@@ -73,7 +83,9 @@ def new_adaptive(
     tolerance: float,
     last: int,
     memory: float,
-    inner_step: float,
+    aim: float,
+    saved: float,
+    inner: Lengthened,
     times: np.ndarray,
     room: np.ndarray,
 ) -> Adaptive:
@@ -81,7 +93,7 @@ def new_adaptive(
 
     Args:
         nodes: the layout of passes.
-        rungs, measured, tolerance, last, memory, inner_step, times, room: see `Adaptive`.
+        rungs, measured, tolerance, last, memory, aim, saved, inner, times, room: see `Adaptive`.
     """
     unknowns, groups = nodes.unknown.size, measured.members.size
     size = nodes.degree * unknowns
@@ -102,8 +114,13 @@ def new_adaptive(
         covered=np.zeros(4),
         room=room,
         memory=memory,
-        inner_step=inner_step,
-        sharpness=np.zeros(1),
+        aim=aim,
+        saved=saved,
+        inner=inner,
+        error=np.zeros(2),
+        sharpness=np.zeros(2),
+        counts=np.zeros(2),
+        ones=np.ones(2),
         state=np.zeros(TAKEN_BACK + 1, dtype=np.int64),
         before=np.zeros((nodes.degree + 1, unknowns)),
         times=times,

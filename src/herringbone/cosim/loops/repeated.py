@@ -59,7 +59,7 @@ def errors_again(nodes: NodeLayout, buffers: Buffers, adaptive: Adaptive, count:
     """Take the error of a step, and the size of the forces, so many times."""
     total = 0.0
     for _ in range(count):
-        error, _ = step_error(
+        coupling, inner, _ = step_error(
             nodes, buffers, adaptive.measured, adaptive.moments, adaptive.squares, adaptive.room,
             adaptive.measured.members.size, HISTORY, 1.0,
         )  # fmt: skip
@@ -67,7 +67,7 @@ def errors_again(nodes: NodeLayout, buffers: Buffers, adaptive: Adaptive, count:
             nodes, buffers, adaptive.measured, adaptive.moments, adaptive.covered, adaptive.memory,
             0.0,
         )  # fmt: skip
-        total += error
+        total += coupling + inner
     return total
 
 

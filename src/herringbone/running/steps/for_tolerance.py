@@ -2,8 +2,8 @@
 
     asked         the relative error that the user states
     algorithm     `li` with a macro step that follows the tolerance, where all parts can repeat a
-                  step and are of this project; of degree 3, or 4 where little error is left; with
-                  foreign parts a fixed step, found by runs (see `step_search`)
+                  step and are of this project; of degree 3 or 4, see `cheapest_degree`;
+                  with foreign parts a fixed step, found by runs (see `step_search`)
     inner steps   of own parts, see `inner_steps`; with the square of the macro step where runs find
                   that, see `inner_steps_of_runs`; foreign FMUs are told a share of the
                   tolerance in FMI's setup call
@@ -26,10 +26,6 @@ from herringbone.running.steps.inner_steps import with_inner_steps
 from herringbone.running.steps.inner_steps_of_runs import SHARE
 from herringbone.running.steps.suited_step import records_apart
 from herringbone.scenes import Scene
-
-_FINE = 3e-5
-"""Tolerance below which degree 4 takes less time than degree 3, as measured on the test rig, where
-teeth are in contact and where they separate."""
 
 
 def by_default(system: System, asked: Asked) -> Asked:
@@ -74,17 +70,21 @@ def for_tolerance(
     if searched:
         return system, replace(asked, part_tolerance=SHARE * tolerance)
     kicked = bool(scene.start_offset)
-    algorithm = given or LI(degree=4 if tolerance < _FINE else LI().degree)
-    algorithm = with_tolerance(algorithm, tolerance)
-    degree = algorithm.degree if isinstance(algorithm, LI) else LI().degree
-    found = with_inner_steps(system, tolerance, degree, kicked=kicked)
+    degree = None if given is None else LI().degree
+    if isinstance(given, LI):
+        degree = given.degree
+    apart = min(asked.record_step or records_apart(scene, tolerance), scene.t_end)
+    found = with_inner_steps(
+        system, tolerance, degree, kicked=kicked, apart=min(apart, asked.step or apart)
+    )
+    algorithm = with_tolerance(given or LI(degree=found.degree), tolerance)
     said = f"tolerance = {tolerance:g}" + " (default)" * asked.by_default
     why = "" if given else f"{said}: {algorithm}, the cheapest for it"
     line = "; ".join(filter(None, (why, _fewer_records(scene, asked, tolerance))))
     return found.system, replace(
         asked,
         algorithm=algorithm,
-        inner_step=found.longest,
+        inner=found.stepping,
         part_tolerance=SHARE * tolerance,
         notes=(*asked.notes, *filter(None, (line,)), *found.lines),
     )

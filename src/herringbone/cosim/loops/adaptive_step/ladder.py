@@ -1,22 +1,24 @@
 """The ladder of macro steps of an adaptive run, in whole ticks.
 
 All times are whole numbers of one tick, so that they do not drift and the end is hit exactly. The
-rungs lie a factor of 1.2 to 1.33 apart (1 ... 200 in the series 1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5,
-6.4, 8, rounded to ticks); parts and algorithm keep for each rung what depends on the step alone.
+rungs lie a factor of 1.2 to 1.33 apart, and all but three divide the largest one, so that rows at
+equal distances leave a choice: whole numbers of 1, 2, 3, 4, 5, 6, 8, 10 ... steps from row to row.
+Parts and algorithm keep for each rung what depends on the step alone.
 """
 
 import numpy as np
 
 from herringbone.kernels.compiling.jit import kernel
 
-RUNGS = (4, 5, 6, 8, 10, 13, 16, 20, 25, 32, 40, 50, 64, 80, 100, 125, 160, 200, 250, 320, 400, 500,
-         640, 800)  # fmt: skip
+RUNGS = (4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 60, 80, 96, 120, 160, 192, 240, 320, 400, 480,
+         576, 720, 960)  # fmt: skip
 """Macro steps in ticks."""
 TICKS = RUNGS[-1]
 """Ticks of the largest step."""
-FIRST = len(RUNGS) - 8
-"""Rung with which a run begins that asks for FIRST_TOLERANCE: a fifth of the largest step."""
-FIRST_TOLERANCE = 1e-4
+FIRST = (0.0, 0.2, 0.4, 1.0, 1.0)
+"""Step with which a run begins that asks for FIRST_TOLERANCE, by degree, in largest steps: about
+the one that will be used, so that its Jacobian serves."""
+FIRST_TOLERANCE = 1e-3
 
 
 @kernel
@@ -29,8 +31,7 @@ def _reachable(ticks: int) -> bool:
 def dividing_rung(rungs: np.ndarray, wanted: int, left: int) -> int:
     """The largest rung up to `wanted` of which a whole number makes the rest, or else `wanted`.
 
-    Two thirds of the rungs divide the largest one, and each that has been taken leaves a rest that
-    is divided again.
+    What has been taken of a row leaves a rest that is divided again.
 
     Args:
         rungs: steps in ticks, ascending.

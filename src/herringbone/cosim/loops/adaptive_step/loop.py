@@ -24,18 +24,21 @@ from herringbone.cosim.layouts.adaptive import (
     WANTED,
     Adaptive,
 )
+from herringbone.cosim.layouts.inner_stepping import ARE, TO_BE, Lengthened
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
 from herringbone.cosim.loops.adaptive_step.ladder import dividing_rung, fitting_rung
 from herringbone.cosim.loops.adaptive_step.step_choice import (
     TOO_MUCH,
     continued,
+    inner_steps,
     next_rung,
     too_much,
 )
 from herringbone.cosim.loops.adaptive_step.step_error import (
+    COUPLING,
+    INNER_STEPS,
     KNOWN,
-    ORDER,
     error_so_far,
     step_error,
     update_sizes,
@@ -45,6 +48,7 @@ from herringbone.cosim.loops.common import (
     LAST_GOOD,
     NOT_FINITE,
     PART_FAILED,
+    exchange,
     get_outputs,
     not_finite,
 )
@@ -110,6 +114,28 @@ def _accept(
 
 
 @inlined
+def _sized(adaptive: Adaptive) -> bool:
+    """True as soon as the sizes of channels are known."""
+    return adaptive.covered[0] >= KNOWN * adaptive.memory
+
+
+@inlined
+def _tell_inner_steps(layout: Layout, inner: Lengthened) -> int:
+    """Tell the parts their inner steps, if they are others than before; -1, or who refused."""
+    if inner.times[TO_BE] == inner.times[ARE]:
+        return -1
+    inner.times[ARE] = inner.times[TO_BE]
+    for k in range(inner.part.size):
+        inner.value[0] = inner.times[ARE] * inner.step[k]
+        status = exchange(
+            layout, inner.part[k], layout.set_real, inner.reference, k, 1, inner.value, 0
+        )
+        if status > LAST_GOOD:
+            return inner.part[k]
+    return -1
+
+
+@inlined
 def _try(
     layout: Layout,
     nodes: NodeLayout,
@@ -125,24 +151,24 @@ def _try(
     buffers.spacing[0] = state[BEFORE] / adaptive.rungs[rung]
     buffers.spacing[1] = state[BEFORE_THAT] / adaptive.rungs[rung]
     buffers.counts[2] = 0
+    failed = _tell_inner_steps(layout, adaptive.inner)
+    if failed >= 0:
+        return failed, np.inf
     failed = begin(layout, nodes, buffers, control.order, known, t, h, False)
     if known > 1:
         continued(nodes, buffers, adaptive.before)
     if failed < 0:
         failed, _ = converge(layout, nodes, buffers, adaptive.corrections[rung], control, t, h)
     if failed >= 0:
+        adaptive.error[COUPLING] = np.inf
         return failed, np.inf
-    inner_steps = np.inf
-    if adaptive.inner_step > 0.0:
-        inner_steps = max(1.0, np.ceil(h / (nodes.degree * adaptive.inner_step) - 1e-9))
-    sized = adaptive.covered[0] >= KNOWN * adaptive.memory
-    groups = adaptive.measured.members.size if sized else adaptive.measured.units
-    error, culprit = step_error(
+    groups = adaptive.measured.members.size if _sized(adaptive) else adaptive.measured.units
+    coupling, inner, culprit = step_error(
         nodes, buffers, adaptive.measured, adaptive.moments, adaptive.squares, adaptive.room,
-        groups, known, inner_steps,
+        groups, known, inner_steps(adaptive, rung, nodes.degree, adaptive.inner.times[ARE]),
     )  # fmt: skip
-    state[CULPRIT] = culprit
-    return -1, error
+    adaptive.error[COUPLING], adaptive.error[INNER_STEPS], state[CULPRIT] = coupling, inner, culprit
+    return -1, np.hypot(coupling, inner)
 
 
 @inlined
@@ -163,7 +189,7 @@ def _complete(
     failed = _record(layout, adaptive, buffers.history, chunk, done + ticks)
     if failed >= 0:
         return PART_FAILED, ticks, failed
-    wanted = next_rung(adaptive, rung, error, ORDER[nodes.degree])
+    wanted = next_rung(adaptive, rung, nodes.degree, _sized(adaptive))
     state[WANTED] = min(wanted, rung) if state[TAKEN_BACK] else wanted
     state[TAKEN_BACK] = 0
     missed = not error <= TOO_MUCH * adaptive.tolerance
@@ -193,10 +219,10 @@ def _macro_step(
     smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), left) < rung
     if failed >= 0 and not (smaller and buffers.counts[2] == _DISCARDED):
         return PART_FAILED, 0, failed
-    if smaller and too_much(adaptive, rung, error, ORDER[nodes.degree]):
+    if smaller and too_much(adaptive, rung, error, nodes.degree):
         failed = _take_back(layout, nodes, buffers)
         adaptive.rejected[rung] += 1
-        wanted = next_rung(adaptive, rung, error, ORDER[nodes.degree])
+        wanted = next_rung(adaptive, rung, nodes.degree, _sized(adaptive))
         state[WANTED], state[TAKEN_BACK] = min(rung - 1, wanted), 1
         return PART_FAILED if failed >= 0 else DONE, 0, failed
     corrections = buffers.counts[1] - before

@@ -43,7 +43,8 @@ INNER = 0.02
 """Force, over d^4 f^(4), by which classical Runge-Kutta with inner steps d changes a run as much as
 these inner steps do: 1.6 times what polynomials of degree 3 miss with one inner step from node to
 node, as measured on the test rig with macro steps of 40 to 125 us."""
-_INNER_ORDER = 4
+INNER_ORDER = 4
+"""Of the error of classical Runge-Kutta."""
 FLOOR = 1e-3
 """Smallest standard deviation that counts, in units of the largest value."""
 LEAST = 1e-9
@@ -123,12 +124,12 @@ def _signal_errors(
     p = nodes.degree
     points = min(ORDER[p] - p, known - 1, HISTORY - 2)
     points_1 = min(ORDER[1] - 1, known - 1)
-    points_4 = min(max(_INNER_ORDER - p, 0), known - 1, HISTORY - 2)
+    points_4 = min(max(INNER_ORDER - p, 0), known - 1, HISTORY - 2)
     own, linear, fourth = room[_OWN], room[_LINEAR], room[_FOURTH]
     _weights(buffers, p, points, room[_PLACES], own)
     _weights(buffers, 1, points_1, room[_PLACES], linear)
     _weights(buffers, p, points_4, room[_PLACES], fourth)
-    finer = AMPLIFICATION * INNER / (p * inner_steps) ** _INNER_ORDER
+    finer = AMPLIFICATION * INNER / (p * inner_steps) ** INNER_ORDER
     for k in range(measured.output.size):
         i = measured.output[k]
         missing = _difference(buffers, i, own, 1, p, points)
@@ -155,8 +156,10 @@ def step_error(
     groups: int,
     known: int,
     inner_steps: float,
-) -> tuple[float, int]:
-    """Relative error of the worst group in the present step, and the unknown that errs most.
+) -> tuple[float, float, int]:
+    """Relative errors of coupling and inner steps in the present step, and the worst unknown.
+
+    They are those of the group that errs most, and the error of the step is their norm.
 
     Without enough communication points before the step, a lower derivative stands for f^(q).
 
@@ -180,22 +183,26 @@ def step_error(
         squares[INNER_STEPS, g] += inner
         error = np.sqrt(coupling + inner) / moments[SIZE, g]
         if error - error != 0.0:
-            return np.inf, min(k, nodes.unknown.size - 1)
+            return np.inf, 0.0, min(k, nodes.unknown.size - 1)
         if error > largest and k < nodes.unknown.size:
             largest, culprit = error, k
-    return _worst(measured, moments, squares, groups, 1.0), culprit
+    coupling, inner = _worst(measured, moments, squares, groups, 1.0)
+    return coupling, inner, culprit
 
 
 @inlined
 def _worst(
     measured: Measured, moments: np.ndarray, squares: np.ndarray, groups: int, covered: float
-) -> float:
-    """Relative error of that of the first groups that errs most."""
-    worst = 0.0
+) -> tuple[float, float]:
+    """Relative errors of coupling and inner steps of that of the first groups that errs most."""
+    worst, found = 0.0, (0.0, 0.0)
     for g in range(groups):
-        mean = (squares[COUPLING, g] + squares[INNER_STEPS, g]) / (covered * measured.members[g])
-        worst = max(worst, np.sqrt(mean) / moments[SIZE, g])
-    return worst
+        count = covered * measured.members[g]
+        coupling = np.sqrt(squares[COUPLING, g] / count) / moments[SIZE, g]
+        inner = np.sqrt(squares[INNER_STEPS, g] / count) / moments[SIZE, g]
+        if np.hypot(coupling, inner) > worst:
+            worst, found = np.hypot(coupling, inner), (coupling, inner)
+    return found
 
 
 @inlined
@@ -210,7 +217,8 @@ def error_so_far(
         errors: (2, groups): integrals of the squares of `step_error` over time.
         covered: time since the start [s].
     """
-    return _worst(measured, moments, errors, measured.members.size, covered)
+    coupling, inner = _worst(measured, moments, errors, measured.members.size, covered)
+    return np.hypot(coupling, inner)
 
 
 @inlined
