@@ -44,7 +44,8 @@ def test_a_resumed_run_has_the_bits_of_a_whole_one(tmp_path, capsys, monkeypatch
     wanted = hb.load(tmp_path / "whole").data.to_numpy()[: len(there.data)]
     assert there.data.to_numpy().tobytes() == wanted.tobytes()
     assert main([*arguments, "-o", str(folder)]) == 2
-    assert "go on with --resume" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert f"go on with 'herringbone run --resume {folder}'" in said
     found = taken_up(monkeypatch)
     assert main(["run", "--resume", str(folder)]) == 0
     assert len(found) == 1
