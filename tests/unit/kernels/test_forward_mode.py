@@ -1,5 +1,6 @@
 """Forward mode against derivatives that are known in closed form."""
 
+import importlib
 import math
 
 import numpy as np
@@ -89,3 +90,24 @@ def test_arrays_views_and_simultaneous_assignment():
 def test_what_is_not_known_is_refused():
     with pytest.raises(NotDifferentiableError, match=r"_counted: .* does not know 'b.sum'"):
         differentiate(_counted)
+
+
+def test_files_of_the_same_name_are_told_apart(tmp_path, monkeypatch):
+    """As `motion` and `layout` of two components: the later constant and kernel stood for both."""
+    monkeypatch.syspath_prepend(tmp_path)
+    of_package = (
+        "from herringbone.kernels.compiling.jit import kernel\n\nFACTOR = {0}.0\n\n\n"
+        "@kernel\ndef scaled(x: float) -> float:\n    return FACTOR * x\n"
+    )
+    for k, name in enumerate(("first_pair", "second_pair")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "__init__.py").write_text("")
+        (tmp_path / name / "layout.py").write_text(of_package.format(k + 2))
+    (tmp_path / "both_pairs.py").write_text(
+        "from first_pair import layout as a\nfrom first_pair.layout import scaled as one\n"
+        "from second_pair import layout as b\nfrom second_pair.layout import scaled as two\n"
+        "from herringbone.kernels.compiling.jit import kernel\n\n\n"
+        "@kernel\ndef both(x: float) -> float:\n    return one(x) * a.FACTOR + two(x) * b.FACTOR\n"
+    )
+    (both,) = differentiate(importlib.import_module("both_pairs").both)
+    assert both(1.0, 1.0) == (2.0 * 2.0 + 3.0 * 3.0,) * 2

@@ -12,7 +12,7 @@ from types import ModuleType
 from numba.core.dispatcher import Dispatcher
 
 from herringbone.core.caching.generated import load_generated
-from herringbone.kernels.derivatives.trees import SUFFIX, mangled
+from herringbone.kernels.derivatives.trees import SUFFIX, mangled, unique_name
 
 _HEADER = '''"""Tangents of kernels; generated, not to be edited."""
 
@@ -78,7 +78,7 @@ class _Module:
 
     def constant(self, owner: str, name: str, value: object) -> str:
         """Name of a constant that stands in the module `owner`."""
-        unique = f"{owner.rpartition('.')[2]}_{name}"
+        unique = unique_name(owner, name)
         self._constants[unique] = "math.inf" if value == math.inf else repr(value)
         return unique
 

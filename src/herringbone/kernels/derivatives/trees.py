@@ -16,9 +16,17 @@ def definition_of(kernel: Dispatcher) -> ast.FunctionDef:
     return next(s for s in tree.body if isinstance(s, ast.FunctionDef))
 
 
+def unique_name(module: str, name: str) -> str:
+    """A name of a module, for generated ones that take names of many.
+
+    The whole path counts: components have files of the same name.
+    """
+    return f"{module.removeprefix('herringbone.').replace('.', '__')}__{name}"
+
+
 def mangled(function: Callable) -> str:
     """A function's name that is unique in a generated module."""
-    return f"{function.__module__.rpartition('.')[2]}_{function.__name__}"
+    return unique_name(function.__module__, function.__name__)
 
 
 def is_target(node: ast.AST) -> bool:
