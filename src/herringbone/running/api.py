@@ -57,6 +57,7 @@ def run(
     probe: bool = True,
     in_process: bool | None = None,
     call_deadline: float | None = None,
+    longest_trial: int | None = None,
     reference: bool = False,
     verify: bool = False,
     fuse: bool = False,
@@ -106,6 +107,8 @@ def run(
             run; False, the default on Linux: each runs in a child process, see `cosim.cell`.
         call_deadline: longest time that a call of an FMU in a child process may take [s]; 60 s if
             not given.
+        longest_trial: steps of a trial in the test of what a housing FMU must do; longer ones are
+            left out. All if not given.
         reference: also solve the monolithic twin, and report the errors against it.
         verify: also run with half the macro step and half the inner steps, and report how far
             apart both are, see `running.steps.verification`; for systems that have no twin.
@@ -151,7 +154,9 @@ def run(
     )  # fmt: skip
     with (
         one_blas_thread(),
-        foreign_fmu_policy(in_process=in_process, deadline=call_deadline),
+        foreign_fmu_policy(
+            in_process=in_process, deadline=call_deadline, longest_trial=longest_trial
+        ),
         placed(output, recorded, overwrite=overwrite) as place,
     ):
         structure, chosen, notes = prepared(

@@ -8,6 +8,7 @@ import numpy as np
 from herringbone.core.activity import lasting, tell
 from herringbone.core.declaring.roles import HALVES
 from herringbone.core.part import Part
+from herringbone.core.wording import option
 from herringbone.cosim.loops.drive import drive
 from herringbone.cosim.signature.cost import PATIENCE
 from herringbone.cosim.signature.trial import check_length
@@ -70,6 +71,7 @@ class Runs:
         if steps * self.seconds > PATIENCE:
             tell(
                 f"{name} is slow, {self.seconds:.2g} s a step: the tests of what a housing must do "
-                f"take {steps} steps, {lasting(steps * self.seconds)}; --longest-trial {short} "
-                "leaves those out that take the most, 'run' with --no-probe all"
+                f"take {steps} steps, {lasting(steps * self.seconds)}; "
+                f"{option('longest_trial', short)} leaves those out that take the most, 'run' with "
+                "--no-probe all"
             )

@@ -10,6 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
 from herringbone.core import ParameterError
+from herringbone.core.wording import option
 from herringbone.cosim.cell.system_calls import FUTEX
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ def foreign_fmu_policy(
     if deadline is not None and not deadline > 0.0:
         raise ParameterError(f"call_deadline = {deadline:g} s: it must be positive")
     if longest_trial is not None and longest_trial < 1:
-        raise ParameterError(f"--longest-trial {longest_trial}: it must be 1 at least")
+        raise ParameterError(f"{option('longest_trial', longest_trial)}: it must be 1 at least")
     outer = policy()
     found = Policy(
         outer.in_process if in_process is None else in_process,
@@ -122,20 +123,23 @@ def _under(
 
 @contextmanager
 def foreign_fmus_housed(
-    in_process: bool | None, deadline: float | None
+    in_process: bool | None, deadline: float | None, longest_trial: int | None
 ) -> Iterator[Sequence[Remark]]:
     """As `foreign_fmu_policy`, with remarks that are to be told; a context around tells its own.
 
     Args:
-        in_process, deadline: see `foreign_fmu_policy`.
+        in_process, deadline, longest_trial: see `foreign_fmu_policy`.
 
     Raises:
-        ParameterError: the deadline is not positive.
+        ParameterError: the deadline is not positive, or a trial has no step.
     """
-    if _policy.get() is not None and in_process is None and deadline is None:
+    asked = in_process, deadline, longest_trial
+    if _policy.get() is not None and asked == (None, None, None):
         yield ()
         return
-    with foreign_fmu_policy(in_process=in_process, deadline=deadline) as found:
+    with foreign_fmu_policy(
+        in_process=in_process, deadline=deadline, longest_trial=longest_trial
+    ) as found:
         yield found.remarks
 
 

@@ -61,6 +61,7 @@ def chart(
     fuse: bool = False,
     in_process: bool | None = None,
     call_deadline: float | None = None,
+    longest_trial: int | None = None,
     progress: bool | Progress = False,
 ) -> WorkPrecision:
     """Run algorithms up a ladder of steps, against the monolithic twin.
@@ -77,7 +78,7 @@ def chart(
         values, gear, housing, replace_parts: as in `herringbone.run`.
         fmu: kind of the parts' FMUs, as in `herringbone.run`.
         fuse: curves of the fused system, too; its steps are the base steps of the core.
-        in_process, call_deadline: of foreign FMUs, as in `herringbone.run`.
+        in_process, call_deadline, longest_trial: of foreign FMUs, as in `herringbone.run`.
         progress: True for a count of runs; or called before each with algorithm and step [s].
 
     Returns:
@@ -88,7 +89,7 @@ def chart(
     """
     check_called("progress", progress)
     with (
-        foreign_fmus_housed(in_process, call_deadline) as remarks,
+        foreign_fmus_housed(in_process, call_deadline, longest_trial) as remarks,
         _counted(progress) as counted,
     ):
         wishes = Wishes(

@@ -8,62 +8,48 @@ longer macro steps, and take shorter inner ones beside each other. It is not lon
 what a part does by itself, such as teeth that swing against each other, nor than is stable. Where
 the run begins without load, or with a kick, teeth part: there `separation_step` tells. An inner
 step that is set by name stays.
-
-Where the system's start is no load, or foreign parts take part, each gearbox is looked at by
-itself under a torque.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
-
-import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.stability.bonds import highest_frequency
-from herringbone.analysis.stability.linear_parts import Member, linear_network
 from herringbone.analysis.stability.recommendation import RULE_ERROR, separation_step
 from herringbone.components.registry import component
-from herringbone.core import HerringboneError, Instance, ParameterError
+from herringbone.core import Instance
 from herringbone.core.caching.remembered import Remembered
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.declaring.variable import Causality
 from herringbone.core.places.part_path import PartPath, in_groups
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.layouts.inner_stepping import InnerStepping
-from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System
 from herringbone.running.content import contents_of_system
-from herringbone.running.pairs.carrying_flank import loaded_start
-from herringbone.running.pairs.open_flanges import loaded
 from herringbone.running.steps.cheapest_degree import cheapest_degree
+from herringbone.running.steps.linear_gearbox import STABLE, Linear, linear, stable_step
 
 _known: Remembered["_Chosen"] = Remembered(256)
 _LI = LI()
 _RULE = _LI.accurate_step or 0.0
 _BY_DEGREE = {4: 0.7}
+"""Inner steps beside polynomials of this degree, over those beside degree 3."""
 _OPEN, _KICKED = 0.5, 1.5
 """Error by `separation_step` over the tolerance. Macro steps are short while teeth part: for a few
 blows they do."""
 _SHORTEST = 5e-7
 """Where teeth part [s]: a millisecond takes two thousand of them."""
-_STABLE = 2.5
-"""Step of classical Runge-Kutta times frequency: 2.8 is the limit."""
 _ORDER = 4
-"""Of its error."""
+"""Of the error of classical Runge-Kutta."""
 _FOLLOWS = 1.1
-"""The same at the rule's error of 1e-3; the phase of a swing errs by 1/120 of its fourth power in
-every radian. That hardly shows in bearing forces, but in velocities of the gears, and where teeth
-meet: errors were 3.7 and 1.8 times the tolerance without, on `on_ground` and in `tip_out` of
-`e_axle`. Macro steps get longer by it, as inner steps take less of the tolerance."""
+"""Step times frequency, as STABLE, at the rule's error of 1e-3; the phase of a swing errs by 1/120
+of its fourth power in every radian. That hardly shows in bearing forces, but in velocities of the
+gears, and where teeth meet: errors were 3.7 and 1.8 times the tolerance without, on `on_ground` and
+in `tip_out` of `e_axle`. Macro steps get longer by it, as inner steps take less of the tolerance.
+"""
 _SHOWN = 0.75
 """Times that, where velocities of the gears are recorded: `on_ground` erred 2.7 times 1e-3 without,
 and the error falls with the fourth power."""
-_TORQUE = 200.0
-"""At the pinion of a gearbox that is looked at by itself [N m]."""
-_BOX = frozenset({Role.GEAR_PAIR, Role.BEARING, Role.HOUSING})
-_CHANGE = 1e-8
-"""Of a state, in SI units; the parts are linear."""
 
 
 class InnerSteps(NamedTuple):
@@ -135,7 +121,7 @@ def _chosen(
     system: System, tolerance: float, degree: int | None, kicked: bool, apart: float
 ) -> _Chosen:
     """See `with_inner_steps`."""
-    found = _linear(system)
+    found = linear(system)
     bond = highest_frequency(found.network, found.members) if found else 0.0
     if found is None or not bond:
         return _Chosen({}, {}, degree or cheapest_degree(None, tolerance, apart), ())
@@ -149,7 +135,7 @@ def _chosen(
         wanted = max(blows, _SHORTEST)
         why = "the shortest that is taken" if wanted > blows else "because teeth part"
     stable = _stable(system, found)
-    follows = _FOLLOWS / _STABLE * (tolerance / RULE_ERROR) ** (1.0 / _ORDER)
+    follows = _FOLLOWS / STABLE * (tolerance / RULE_ERROR) ** (1.0 / _ORDER)
     follows *= _SHOWN if _gears_are_recorded(system) else 1.0
     chosen = {path: min(wanted, min(follows, 1.0) * longest) for path, longest in stable.items()}
     said = []
@@ -179,7 +165,7 @@ def _gears_are_recorded(system: System) -> bool:
 
 def stable_inner_steps(system: System) -> dict[str, float]:
     """The longest inner step [s] that own parts may take, by path, where none is set by name."""
-    return _stable(system, _linear(system))
+    return _stable(system, linear(system))
 
 
 def _paths(system: System) -> Iterator[tuple[str, str]]:
@@ -191,7 +177,7 @@ def _paths(system: System) -> Iterator[tuple[str, str]]:
             yield part, path
 
 
-def _stable(system: System, found: "_Linear | None") -> dict[str, float]:
+def _stable(system: System, found: Linear | None) -> dict[str, float]:
     """See `stable_inner_steps`; of a part that could not be made linear the declared step."""
     members = found.members if found else []
     own = {member.name: member for member in members if isinstance(member, Instance)}
@@ -200,7 +186,7 @@ def _stable(system: System, found: "_Linear | None") -> dict[str, float]:
         spec, variable = system.part(part), system.split(path)[1]
         declared = component(str(spec.component)).declaration.variable(variable)
         if variable not in spec.values:
-            stable = _stable_step(own[part]) if part in own else float(declared.start)
+            stable = stable_step(own[part]) if part in own else float(declared.start)
             steps[path] = min(stable, declared.maximum or stable)
     return steps
 
@@ -218,63 +204,3 @@ def _value(system: System, path: str, chosen: dict[str, float]) -> float:
     part = system.part(name)
     declared = component(str(part.component)).declaration.variable(variable).start
     return float(chosen.get(path, part.values.get(variable, declared)))
-
-
-class _Linear(NamedTuple):
-    """A system's parts under load, linear; a mesh may be open where the run begins."""
-
-    network: Network
-    members: list[Member]
-    open: bool
-
-
-def _linear(system: System) -> _Linear | None:
-    """The parts as they start, or each gearbox by itself; None where neither can be had."""
-    with_load = not system.foreign_parts
-    try:
-        if with_load:
-            return _Linear(*linear_network(system), open=False)
-    except ParameterError:  # a mesh is open
-        pass
-    except HerringboneError:
-        return None
-    boxes = _only(system, _BOX)
-    if not boxes.parts:
-        return None
-    try:
-        alone = loaded(boxes, _TORQUE)
-        return _Linear(*linear_network(alone.with_values(loaded_start(alone)[0])), open=with_load)
-    except HerringboneError:
-        return None
-
-
-def _only(system: System, roles: Iterable[Role]) -> System:
-    """The system's own parts of some roles, and what joins them."""
-    known, wanted = anatomy(system), set(roles)
-    parts = tuple(
-        part
-        for part in system.parts
-        if not part.foreign and wanted & set(known.parts[part.name].roles)
-    )
-    names = {part.name for part in parts}
-    connections = tuple(
-        pair for pair in system.connections if {system.split(path)[0] for path in pair} <= names
-    )
-    return replace(system, parts=parts, connections=connections)
-
-
-def _stable_step(part: Instance) -> float:
-    """The longest stable inner step of a linear part by itself [s]."""
-    count = part.component.declaration.state_count
-    block = part.block.copy()
-    before, after = np.empty(count), np.empty(count)
-    part.component.kernels.rhs(block, 0.0, before)
-    matrix = np.empty((count, count))
-    for k in range(count):
-        value = block[k]
-        block[k] = value + _CHANGE
-        part.component.kernels.rhs(block, 0.0, after)
-        matrix[:, k] = (after - before) / (block[k] - value)
-        block[k] = value
-    highest = float(np.abs(np.linalg.eigvals(matrix)).max(initial=0.0))
-    return _STABLE / highest if highest > 0.0 else np.inf
