@@ -37,7 +37,12 @@ from herringbone.result.result import Result
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 MOST, LEAST, DEARER = 2.0, 0.02, 1.2
 """Errors over the tolerance; CPU time over that of the next tolerance, by its own scatter."""
-LIMITS = ("the longest that is stable", "is of no use here", "the shortest that is taken")
+LIMITS = (
+    "the longest that is stable",
+    "is of no use here",
+    "the shortest that is taken",
+    "macro steps are as long as",
+)
 """Lines that name what keeps the error below what is asked for."""
 KINDS = ("oscillator_mass.c", "oscillator_spring.c")
 _R_MIN = math.pi / 30.0

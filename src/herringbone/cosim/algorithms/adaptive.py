@@ -4,7 +4,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from herringbone.cosim.algorithms.adaptive_figures import error_estimate, step_statistics
+from herringbone.cosim.algorithms.adaptive_figures import (
+    error_estimate,
+    longest_steps,
+    step_statistics,
+)
 from herringbone.cosim.algorithms.iterated import SMALLEST, PreparedNodes
 from herringbone.cosim.algorithms.jacobian import PREDICTION, CouplingError, StepRefusedError
 from herringbone.cosim.algorithms.prepared import PreparedRun
@@ -148,10 +152,13 @@ class PreparedAdaptive(PreparedNodes):
 
     @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
-        """Downgrades; and steps that could not be made small enough."""
-        missed = int(self._adaptive.state[MISSED]) if self._adaptive else 0
-        if not missed:
+        """Downgrades; and steps that could not be made small enough, or as long as it would do."""
+        if self._adaptive is None:
             return self._downgrades
+        missed = int(self._adaptive.state[MISSED])
+        if not missed:
+            line = longest_steps(self._adaptive, self._tick, self._every, self.tolerance)
+            return (*self._downgrades, *filter(None, (line,)))
         if self._missing:
             rest = f"{self._kept:.2g} was aimed at from there on; {missed} steps in all missed it"
             return (*self._downgrades, f"{self._missing}; {rest}")

@@ -3,8 +3,14 @@
 import numpy as np
 
 from herringbone.cosim.layouts.adaptive import Adaptive
+from herringbone.cosim.loops.adaptive_step.ladder import TICKS
 from herringbone.cosim.loops.adaptive_step.step_error import COUPLING, INNER_STEPS, SIZE
 from herringbone.cosim.rows.recording import ErrorEstimate, StepStatistics
+
+_MOST_OF_IT = 0.9
+"""Share of a run."""
+_LITTLE = 0.1
+"""Share of the tolerance."""
 
 
 def step_statistics(adaptive: Adaptive, tick: float) -> StepStatistics:
@@ -22,6 +28,27 @@ def step_statistics(adaptive: Adaptive, tick: float) -> StepStatistics:
         float(lengths[0]),
         float(np.median(lengths)),
         float(lengths[-1]),
+    )
+
+
+def longest_steps(adaptive: Adaptive, tick: float, every: int, tolerance: float) -> str:
+    """A line if most of the run was in the longest steps that there are, and errs little; or "".
+
+    Args:
+        adaptive: of the run.
+        tick: in which steps are counted [s].
+        every: ticks from row to row; 0: rows are where steps end.
+        tolerance: that is asked for [1].
+    """
+    most = min(every or TICKS, TICKS)
+    rung = int(np.searchsorted(adaptive.rungs, most, side="right")) - 1
+    share = adaptive.rungs[rung] * adaptive.taken[rung] / adaptive.last
+    if share < _MOST_OF_IT or not adaptive.far[0] < _LITTLE * tolerance:
+        return ""
+    what = "rows are apart" if most == every else "steps can be"
+    return (
+        f"macro steps are as long as {what} ({most * tick:.3g} s), and err {adaptive.far[0]:.2g}, "
+        f"where {tolerance:g} is asked for"
     )
 
 
