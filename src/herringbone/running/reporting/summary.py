@@ -122,7 +122,7 @@ def _cost(result: Result) -> Iterator[str]:
     if info.core:
         yield from _core(info)
     if micro:
-        yield labelled("Micro steps", f"at most: {micro}")
+        yield labelled("Micro steps", f"at most, at the start: {micro}")
     if info.macro_steps and reached > 0.0:
         yield _wall(info, reached)
         yield labelled(
