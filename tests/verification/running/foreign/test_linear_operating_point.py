@@ -2,17 +2,23 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from support.foreign.kinds import build_kinds
 from support.foreign.strangers import write_system
+from support.parts.fakes import FakePart
 
 import herringbone as hb
 from herringbone.analysis.asked import shaft_torques
 from herringbone.analysis.figures.channels import moments
 from herringbone.analysis.stability.instability import warn_if_unstable
-from herringbone.analysis.stability.surrogates.operating_point import flange_points, linear_at
+from herringbone.analysis.stability.surrogates.operating_point import (
+    UNLOADED,
+    flange_points,
+    linear_at,
+)
 from herringbone.analysis.unanswered import unanswered
 from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.algorithms import LI
@@ -93,6 +99,28 @@ def test_machines_as_they_are_at_their_speed(started):
     assert residuals[0] < 1e-4
     assert residuals[1] < 1e-3  # half of what a change of 0.03 is of 33 rad/s, as the square goes
     assert lines[0].startswith("motor is linear in the steady rotation in which the run starts: ")
+    assert UNLOADED not in lines
+
+
+def test_teeth_without_load_are_told():
+    """A torque of either part is one."""
+
+    def lines_with(*torques):
+        parts = {
+            f"part {k}": SimpleNamespace(
+                part=FakePart("p").real("flange.tau", "output", "N.m").real("flange.w", "input"),
+                surrogate=SimpleNamespace(
+                    inputs=("flange.w",), outputs=("flange.tau",), start=[0.0],
+                    start_outputs=[torque],
+                ),
+                at_start=True,
+            )
+            for k, torque in enumerate(torques)
+        }  # fmt: skip
+        return list(linear_at(parts))
+
+    assert lines_with(0.0, 1e-6)[-1] == UNLOADED
+    assert UNLOADED not in lines_with(0.0, -40.0)
 
 
 def test_values_declared_are_told(started):

@@ -14,6 +14,11 @@ from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 
 _FEELABLE = 1e-3
 """Speeds [rad/s], torques [N m] and slopes below which a line shows 0."""
+UNLOADED = (
+    "no foreign part gives or takes a torque where the run starts: limits are those of teeth that "
+    "stay in contact; where nothing else loads them and they rattle, runs may grow below, and need "
+    "not above"
+)
 _HOLDS = 1e-2
 """Torque that an angle keeps up for good, over what it makes at once: above, it is no shaft's."""
 
@@ -91,9 +96,13 @@ def steady_slope(model: LinearModel, tau: int, phi: int, w: int) -> float:
 
 
 def linear_at(strangers: Mapping[str, Stranger]) -> Iterator[str]:
-    """A line for each foreign part on the point at which its model is linear."""
+    """A line for each foreign part on where its model is linear; and on teeth without load."""
     for name, stranger in strangers.items():
         yield f"{name} is linear {where(stranger)}"
+    started = [flange_points(s) for s in strangers.values() if s.at_start]
+    torques = [abs(point.torque) for points in started for point in points]
+    if torques and max(torques) < _FEELABLE:
+        yield UNLOADED
 
 
 def where(stranger: Stranger) -> str:
