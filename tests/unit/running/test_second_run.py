@@ -10,7 +10,7 @@ from herringbone.components.resources import flat_csv
 from herringbone.cosim.fmu import unpacked
 from herringbone.running import coupling_choice, remembered_answers
 from herringbone.running.fused import fused
-from herringbone.running.steps import inner_steps
+from herringbone.running.steps import linear_gearbox
 
 ONCE = [
     (flat_csv, "_read"),
@@ -19,7 +19,7 @@ ONCE = [
     (remembered_answers, "loaded_start"),
     (remembered_answers, "fastest_bond"),
     (coupling_choice, "warn_if_unstable"),
-    (inner_steps, "linear_network"),
+    (linear_gearbox, "linear_network"),
     (monolithic, "build_network"),
     (core, "take_apart"),
     (modes, "_eigen"),
