@@ -9,7 +9,7 @@ from herringbone.analysis.stability import limits
 from herringbone.analysis.stability.limits import Stability, default_algorithms
 from herringbone.analysis.stability.steps.step_verdict import StepVerdict, step_verdicts
 from herringbone.analysis.stability.surrogates.operating_point import linear_at
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import Algorithm, parse_algorithm, refuse_adaptive
 from herringbone.cosim.cell.policy import foreign_fmus_housed
 from herringbone.cosim.structure.system import System
