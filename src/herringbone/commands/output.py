@@ -14,7 +14,7 @@ from types import FrameType
 
 from herringbone.core import HerringboneError
 from herringbone.core.errors import reason
-from herringbone.core.termination import forget_signals, note_signal
+from herringbone.core.process.termination import forget_signals, note_signal
 from herringbone.core.wording import words_of_commands
 
 _SELDOM = 20_000, 10, 5

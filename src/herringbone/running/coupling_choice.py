@@ -8,8 +8,8 @@ from typing import NamedTuple
 from herringbone.analysis.stability.instability import warn_if_unstable
 from herringbone.analysis.stability.steps.clock_grid import clocks_of
 from herringbone.core import HerringboneError
-from herringbone.core.activity import activity
 from herringbone.core.part import Part
+from herringbone.core.process.activity import activity
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi, choose_algorithm, start_step
 from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping
 from herringbone.cosim.structure.system import System

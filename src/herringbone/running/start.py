@@ -6,8 +6,8 @@ from dataclasses import replace
 from herringbone.analysis.steady_search import SCALE
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import EquilibriumError
-from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity
+from herringbone.core.process.activity import activity
 from herringbone.core.wording import option, setting
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.remembered_answers import start_of_known

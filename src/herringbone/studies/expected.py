@@ -7,7 +7,7 @@ from pathlib import Path
 from statistics import median
 
 from herringbone.core import ParameterError
-from herringbone.core.activity import lasting
+from herringbone.core.process.activity import lasting
 from herringbone.result.folder.typed import as_json
 from herringbone.studies.evaluators.levels import PERIOD
 from herringbone.studies.working.chain import Done

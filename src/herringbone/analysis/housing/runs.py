@@ -5,9 +5,9 @@ from time import perf_counter
 
 import numpy as np
 
-from herringbone.core.activity import lasting, tell
 from herringbone.core.declaring.roles import HALVES
 from herringbone.core.part import Part
+from herringbone.core.process.activity import lasting, tell
 from herringbone.core.wording import option
 from herringbone.cosim.loops.drive import drive
 from herringbone.cosim.signature.cost import PATIENCE

@@ -19,10 +19,10 @@ from herringbone.analysis.twin.source import TwinLayout, twin_layout, twin_sourc
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, StructureError
-from herringbone.core.activity import activity
 from herringbone.core.caching.generated import load_generated
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.caching.remembered import Remembered
+from herringbone.core.process.activity import activity
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 

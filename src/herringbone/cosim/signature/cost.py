@@ -1,6 +1,6 @@
 """What the trials of a slow part cost, in a line before they are made; no clock decides."""
 
-from herringbone.core.activity import lasting, tell
+from herringbone.core.process.activity import lasting, tell
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.memory import LONG
 

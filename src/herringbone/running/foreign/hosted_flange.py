@@ -13,8 +13,8 @@ from herringbone.analysis.stability.surrogates.identification import LinearModel
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED, Surrogate
 from herringbone.analysis.stability.surrogates.trials import tell_cost
 from herringbone.core import FmuError, ParameterError
-from herringbone.core.activity import activity
 from herringbone.core.part import Part
+from herringbone.core.process.activity import activity
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Kind, Laboratory
 from herringbone.cosim.signature.rotation import InputRule

@@ -12,8 +12,8 @@ from herringbone.analysis.stability.surrogates.stand_in import Stranger
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 from herringbone.analysis.stability.surrogates.trials import tell_cost
 from herringbone.core import FmuError
-from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
+from herringbone.core.process.activity import activity
 from herringbone.cosim.adapter import WithoutStates
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.nodal import NodalPart

@@ -6,9 +6,9 @@ from contextlib import AbstractContextManager
 import numpy as np
 
 from herringbone.core import FmuError
-from herringbone.core.activity import activity
 from herringbone.core.declaring.declaration import is_node
 from herringbone.core.part import Part
+from herringbone.core.process.activity import activity
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, cost, find_signature
 from herringbone.cosim.structure.system import PartSpec

@@ -5,12 +5,12 @@ from pathlib import Path
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.core import ParameterError, ResourceError
-from herringbone.core.activity import activity
 from herringbone.core.caching.files import is_stored, store, stored_files
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.declaring.roles import Quantity
 from herringbone.core.places.files import is_file, is_folder
 from herringbone.core.places.paths import cache_folder
+from herringbone.core.process.activity import activity
 from herringbone.cosim.structure.system import System
 from herringbone.housing import read_housing, write_housing
 from herringbone.housing.files.file_format import HEAD, MODES, SHAPES

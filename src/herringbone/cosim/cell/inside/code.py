@@ -10,10 +10,10 @@ from llvmlite import ir
 from numba.core.ccallback import CFunc
 
 from herringbone.core import FmuError
-from herringbone.core.activity import activity
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import kernels_key
 from herringbone.core.places.paths import cache_folder
+from herringbone.core.process.activity import activity
 from herringbone.cosim.cell.inside import serving
 from herringbone.cosim.fmu.fmi3 import calls, within
 from herringbone.cosim.fmu.fmi3.adapters import adapters
