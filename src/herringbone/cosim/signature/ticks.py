@@ -17,13 +17,14 @@ _FEW = 0.5
 def tick_of(lab: Laboratory, changes: np.ndarray) -> float:
     """Time between changes of the outputs after all inputs were changed [s]; 0: no ticks.
 
-    Steps of 1/16 of the laboratory's are tried first, then whole ones, which find long ticks.
+    Steps of 1/16 of the laboratory's are tried first, where the part takes them, then whole ones,
+    which find long ticks.
 
     Raises:
         Refused: the part refuses whole steps.
     """
-    fine = lab.step / _FINE
-    for h, steps in ((fine, _FINE * _STEPS), (lab.step, _LONG)):
+    fine = [(lab.step / _FINE, _FINE * _STEPS)] if not lab.grain else []
+    for h, steps in (*fine, (lab.step, _LONG)):
         moved = _changes(lab, changes, h, steps)
         if moved.size < _SEEN:
             continue

@@ -77,8 +77,6 @@ def signature_of(
         return _unknown(
             inputs, outputs, step, f"it can be instantiated once only{_HERE % option('in_process')}"
         )
-    if part.one_step:
-        return _unknown(inputs, outputs, step, "it declares that its steps cannot vary: no trials")
     if not inputs and any(v.causality == "input" for v in part.variables.values()):
         return _unknown(inputs, outputs, step, "its inputs are no reals: no trials")
     return _tried(part, make, inputs, outputs, step, content)
@@ -95,7 +93,7 @@ def _tried(
     """See `signature_of`; outputs that are not finite in trials are left out of them."""
     try:
         start = known_start_inputs(make, inputs, content)
-        with Laboratory(make, inputs, outputs, start, step, content=content) as lab:
+        with _laboratory(part, make, inputs, outputs, start, step, content) as lab:
             silent = lab.not_finite
             if part.once and not lab.repeats:
                 return _unknown(inputs, outputs, step, f"{_LEFT}: {lab.why}: no trials")
@@ -103,12 +101,26 @@ def _tried(
             if not silent:
                 return find_signature(lab, part.variables)
         shown = _others(outputs, silent)
-        with Laboratory(make, inputs, shown, start, step, content=content) as lab:
+        with _laboratory(part, make, inputs, shown, start, step, content) as lab:
             found = find_signature(lab, part.variables)
     except FmuError as error:
         return _unknown(inputs, outputs, step, f"no trials: {error}")
     why = f"{', '.join(silent)}: not finite in trials, and taken to depend on nothing"
     return found.with_silent(silent, why)
+
+
+def _laboratory(
+    part: Part,
+    make: Callable[[], Part],
+    inputs: list[str],
+    outputs: list[str],
+    start: np.ndarray,
+    step: float,
+    content: Sequence[str],
+) -> Laboratory:
+    """Of a part's trials, in steps that it declares to take."""
+    kept = (*content, "steps of one length") if content and part.one_step else content
+    return Laboratory(make, inputs, outputs, start, step, content=kept, one_length=part.one_step)
 
 
 def _others(outputs: Sequence[str], silent: Collection[str]) -> list[str]:

@@ -30,8 +30,6 @@ MAY_BE_UNKNOWN = {
     "dog_clutch": "it is not linear there",
     "single_flywheel": "it can be instantiated once only, and runs in this process: no trials",
     "c_single_flywheel": "it can be instantiated once only, and runs in this process: no trials",
-    "press_ram": "its steps cannot vary: no trials",
-    "c_press_ram": "its steps cannot vary: no trials",
 }
 """FMUs whose nature trials cannot find, and why."""
 
