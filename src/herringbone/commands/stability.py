@@ -19,8 +19,8 @@ from herringbone.commands.options import (
     operating_point,
     replacements,
 )
-from herringbone.commands.output import check_writable, say, show
-from herringbone.core import HerringboneError, ParameterError
+from herringbone.commands.output import check_writable, say, show, written_into
+from herringbone.core import ParameterError
 from herringbone.core.places.files import write_whole
 from herringbone.running.operating.one_step import check_asked
 
@@ -159,12 +159,7 @@ def _written(told: Told, folder: Path) -> list[Path]:
         folder / "stability.txt": told.text,
         folder / "stability.json": json.dumps(told.summary),
     }
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with written_into(folder):
         for file, content in contents.items():
             write_whole(file, content + "\n")
-    except OSError as error:
-        raise HerringboneError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from error
     return list(contents)

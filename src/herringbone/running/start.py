@@ -185,8 +185,8 @@ def _dropped(system: System, found: Values) -> Iterator[str]:
         more = f" and {len(lost) - _SHOWN} more" if len(lost) > _SHOWN else ""
         yield (
             f"not used: {', '.join(lost[:_SHOWN])}{more}: the start is the steady rotation, which "
-            "decides on all states; set what commands them, add by start_offset, or use --start "
-            f"{Start.REST}"
+            "decides on all states; set what commands them, add by start_offset, or use "
+            f"{option('start', Start.REST.value)}"
         )
 
 

@@ -73,5 +73,5 @@ class Runs:
                 f"{name} is slow, {self.seconds:.2g} s a step: the tests of what a housing must do "
                 f"take {steps} steps, {lasting(steps * self.seconds)}; "
                 f"{option('longest_trial', short)} leaves those out that take the most, 'run' with "
-                "--no-probe all"
+                f"{option('probe', False)} all"
             )
