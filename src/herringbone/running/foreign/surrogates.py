@@ -209,7 +209,9 @@ def _beginning(spec: PartSpec, make: Callable[[], Part], inputs: list[str]) -> _
     given = {u.name: u for u in spec.approach.inputs}
     onward = replace(spec.approach, inputs=tuple(given[name] for name in inputs)).onward
     brought = (*content, repr(spec.approach))
-    return _Beginning(lambda: approached(make(), spec.approach), onward.still, onward, brought)
+    return _Beginning(
+        lambda: approached(make(), spec.approach, in_trial=True), onward.still, onward, brought
+    )
 
 
 def _with_clock(

@@ -21,6 +21,7 @@ from herringbone.core.part import Part, closing_all
 from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.signature import Laboratory
+from herringbone.cosim.signature.trial import EndedError
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.content import contents_of_trials
@@ -78,13 +79,17 @@ def raised(system: System, step: float) -> Raised:
         activity(f"looking for what drives foreign parts of {system.name}"),
     ):
         network = build_network(system, parts)
-        found = [
-            (spec, point)
-            for number, spec in enumerate(system.parts)
-            if spec.foreign and has_further(network.parts[number])
-            for point in _driving(spec, network, number, step)
-        ]
-    inputs, lines = list[str](), list[str]()
+        found, lines = list[tuple[PartSpec, _SetPoint]](), list[str]()
+        for number, spec in enumerate(system.parts):
+            if not spec.foreign:
+                continue
+            try:
+                found += [(spec, point) for point in _driving(spec, network, number, step)]
+            except FmuError as error:
+                lines.append(
+                    f"what drives {spec.name} is not known, and acts from the start: {error}"
+                )
+    inputs = list[str]()
     for spec, point in found:
         path = f"{spec.name}.{point.name}"
         if why := _not_raised(point):
@@ -96,16 +101,17 @@ def raised(system: System, step: float) -> Raised:
 
 
 def _driving(spec: PartSpec, network: Network, number: int, step: float) -> list[_SetPoint]:
-    """Set points without which a part gives next to nothing."""
+    """Set points without which a part gives next to nothing; raises FmuError."""
     part = network.parts[number]
     given = [c.input for c in network.inputs(number)]
     taken = list(dict.fromkeys(c.output for c in network.connections if c.source == number))
     h = own_step(spec.fmu) if part.one_step and spec.fmu else step
-    try:
-        points = list(_candidates(spec, part, given))
-        whole = _peaks(spec, given, taken, h) if points else np.zeros(len(taken))
-    except FmuError:
+    if not has_further(part):
+        raise FmuError("it can be instantiated once only, and runs in this process: no trials")
+    points = list(_candidates(spec, part, given))
+    if not points:
         return []
+    whole = _peaks(spec, given, taken, h)
     return [p for p in points if _drives(spec, p, given, taken, h, whole)]
 
 
@@ -144,6 +150,8 @@ def _drives(
     without = replace(spec, values={**spec.values, point.name: 0.0})
     try:
         left = _peaks(without, given, taken, h)
+    except EndedError:
+        raise
     except FmuError:  # there is no part with 0 there
         return False
     return bool(whole.any() and np.all(left <= _LEFT * whole))
