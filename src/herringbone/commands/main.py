@@ -75,6 +75,7 @@ def _housing(options: argparse.Namespace) -> AbstractContextManager[Policy]:
         in_process=getattr(options, "in_process", None),
         deadline=getattr(options, "call_deadline", None),
         longest_trial=getattr(options, "longest_trial", None),
+        most_trial_steps=getattr(options, "most_trial_steps", None),
     )
 
 

@@ -32,8 +32,8 @@ from herringbone.running.foreign.other_types import held, rounded
 from herringbone.running.foreign.start_inputs import known_start_inputs
 from herringbone.running.foreign.started import own_step
 from herringbone.running.foreign.trials import found_signature
+from herringbone.running.known_parts import without_parts
 from herringbone.running.loading import instances, open_parts
-from herringbone.running.start import without_parts
 
 _USUAL_STEPS = (1e-3, 1e-4, 1e-2, 1e-5, 5e-4, 2e-3, 5e-3, 2e-4, 0.1)
 """That are tried of parts that take steps of one length only [s]."""
@@ -214,7 +214,9 @@ def _beginning(spec: PartSpec, make: Callable[[], Part], inputs: list[str]) -> _
     given = {u.name: u for u in spec.approach.inputs}
     onward = replace(spec.approach, inputs=tuple(given[name] for name in inputs)).onward
     brought = (*content, repr(spec.approach))
-    return _Beginning(lambda: approached(make(), spec.approach), onward.still, onward, brought)
+    return _Beginning(
+        lambda: approached(make(), spec.approach, in_trial=True), onward.still, onward, brought
+    )
 
 
 def _with_clock(

@@ -43,6 +43,7 @@ def stability(
     in_process: bool | None = None,
     call_deadline: float | None = None,
     longest_trial: int | None = None,
+    most_trial_steps: int | None = None,
     progress: Progress = lambda algorithm: None,
 ) -> Stability | StepVerdicts:
     """Stable steps of coupling algorithms, bonds, and a recommended algorithm and step.
@@ -58,7 +59,8 @@ def stability(
         tolerance: relative error for which a step is recommended.
         simulate: also find the non-linear system's limits, by runs.
         values, gear, housing, replace_parts: as in `herringbone.run`.
-        in_process, call_deadline, longest_trial: of foreign FMUs, as in `herringbone.run`.
+        in_process, call_deadline, longest_trial, most_trial_steps: of foreign FMUs, as in
+            `herringbone.run`.
         progress: see `Progress`.
 
     Returns:
@@ -76,7 +78,7 @@ def stability(
     told: list[str] = []
     with (
         one_blas_thread(),
-        foreign_fmus_housed(in_process, call_deadline, longest_trial) as remarks,
+        foreign_fmus_housed(in_process, call_deadline, longest_trial, most_trial_steps) as remarks,
         known_before(system, scene, speed, torque, wishes, told.append) as found,
     ):
         if step is not None:

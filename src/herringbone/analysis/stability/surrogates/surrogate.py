@@ -27,7 +27,7 @@ from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.signature import Signature
-from herringbone.cosim.signature.trial import Refused
+from herringbone.cosim.signature.trial import NOT_TRIED, Refused
 
 PROMISED = 0.01
 """Residual on trials that were not fitted, above which nothing is promised."""
@@ -151,7 +151,7 @@ class Surrogate:
         if (h, orders) not in self._residuals:
             try:
                 missed = max(self._missed_signals(h, orders), self._fit_missed)
-            except Refused:
+            except NOT_TRIED:
                 missed = np.inf
             self._residuals[h, orders] = missed
         return self._residuals[h, orders]
