@@ -34,8 +34,8 @@ from herringbone.core import (
     HerringboneError,
     OutcomeKind,
 )
-from herringbone.core.termination import EXIT_CODE as TERMINATED
-from herringbone.core.termination import is_terminating
+from herringbone.core.process.termination import EXIT_CODE as TERMINATED
+from herringbone.core.process.termination import is_terminating
 from herringbone.cosim.cell.policy import Policy, foreign_fmu_policy
 
 

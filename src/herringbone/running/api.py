@@ -6,9 +6,9 @@ from pathlib import Path
 
 from herringbone.analysis.steady.set_points import Point
 from herringbone.core import ParameterError
-from herringbone.core.activity import tell
 from herringbone.core.given import check_called
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.activity import tell
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import AUTO, LI, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.cosim.simulation import check_grid, check_records

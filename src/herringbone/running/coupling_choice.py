@@ -8,8 +8,9 @@ from typing import NamedTuple
 from herringbone.analysis.stability.instability import warn_if_unstable
 from herringbone.analysis.stability.steps.clock_grid import clocks_of
 from herringbone.core import HerringboneError
-from herringbone.core.activity import activity
 from herringbone.core.part import Part
+from herringbone.core.process.activity import activity
+from herringbone.core.wording import option
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi, choose_algorithm, start_step
 from herringbone.cosim.cell.policy import policy
 from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping
@@ -141,7 +142,7 @@ def _other_lengths(system: System, parts: Sequence[Part], step: float) -> Iterat
         if proposed and not math.isclose(proposed, step):
             yield (
                 f"{part.name} takes steps of one length only, and proposes {proposed:g} s: if it "
-                f"refuses {step:g} s, use --step {proposed:g}"
+                f"refuses {step:g} s, use {option('step', proposed)}"
             )
 
 

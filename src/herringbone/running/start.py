@@ -6,7 +6,7 @@ from dataclasses import replace
 from herringbone.analysis.steady_search import SCALE
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import EquilibriumError
-from herringbone.core.activity import activity
+from herringbone.core.process.activity import activity
 from herringbone.core.wording import option, setting
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.gradual.fitted import fitted_ramp
@@ -177,8 +177,8 @@ def _dropped(system: System, found: Values) -> Iterator[str]:
         more = f" and {len(lost) - _SHOWN} more" if len(lost) > _SHOWN else ""
         yield (
             f"not used: {', '.join(lost[:_SHOWN])}{more}: the start is the steady rotation, which "
-            "decides on all states; set what commands them, add by start_offset, or use --start "
-            f"{Start.REST}"
+            "decides on all states; set what commands them, add by start_offset, or use "
+            f"{option('start', Start.REST.value)}"
         )
 
 

@@ -137,8 +137,8 @@ def _least(firsts: Sequence[float], share: Callable[[float], float]) -> float:
 
 
 def _first_steps(bench: Bench) -> list[float]:
-    if bench.signature.tick:
-        return [_TICKS * bench.signature.tick]
+    if tick := bench.signature.tick or bench.signature.inner_tick:
+        return [_TICKS * tick]
     return [share * bench.step for share in _FIRST]
 
 

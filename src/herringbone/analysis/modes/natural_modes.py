@@ -31,7 +31,7 @@ from herringbone.analysis.modes.linearised import Linearised, linearised, seen_r
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.core.facts import Facts
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 SLOWEST = 1e-6

@@ -18,7 +18,7 @@ from herringbone.analysis.stability.steps.linear_part import CHANGE, OTHER_CHANG
 from herringbone.analysis.stability.surrogates.stand_in import StandIn
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 from herringbone.core import Instance
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.network import Network
 
 

@@ -15,7 +15,7 @@ from herringbone.cosim.signature.memory import Pulses, pulses
 from herringbone.cosim.signature.rates import rates_of
 from herringbone.cosim.signature.rotation import InputRule, pairs, rule_of
 from herringbone.cosim.signature.signature import Answer, Findings, Kind, Signature
-from herringbone.cosim.signature.ticks import tick_of
+from herringbone.cosim.signature.ticks import inner_tick_of, tick_of
 from herringbone.cosim.signature.trial import Refused
 
 _MOVES = {
@@ -88,7 +88,11 @@ def _by_trials(
         _note_one_length(lab, feedthrough, found)
     _doubt(lab, feedthrough, pulse, found)
     _compare_later(lab, feedthrough, changes, found)
-    given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes))
+    inner = 0.0
+    if grain == 0.0 and np.nan_to_num(feedthrough).any():
+        inner = inner_tick_of(lab, changes, remembers=pulse.memory is Answer.YES)
+        pulse = pulse._replace(memory=Answer.YES) if inner else pulse
+    given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes), tick or inner)
     valid = _valid_at_start(lab, grain)
     rates = rates_of(lab, variables, changes, feedthrough)
     _note_answers(lab, variables, pulse, found)
@@ -106,9 +110,10 @@ def _by_trials(
         delay=pulse.delay,
         rates=rates,
         tick=tick,
+        inner_tick=inner,
         given=given,
         rate_inputs=rate,
-        speeds=inner_speeds(lab, feedthrough, given, rate),
+        speeds=() if inner else inner_speeds(lab, feedthrough, given, rate),
     )
 
 
@@ -149,7 +154,11 @@ def _signature(
 
 
 def _rules(
-    lab: Laboratory, changes: np.ndarray, feedthrough: np.ndarray, together: tuple[int, ...]
+    lab: Laboratory,
+    changes: np.ndarray,
+    feedthrough: np.ndarray,
+    together: tuple[int, ...],
+    tick: float,
 ) -> tuple[tuple[InputRule, ...], tuple[int, ...]]:
     """Which value of each input the part is given for a step, and the number of its rate or -1."""
     given, rate = [InputRule.MEAN] * len(lab.inputs), [-1] * len(lab.inputs)
@@ -159,7 +168,7 @@ def _rules(
     for number, other in pairs(lab.inputs, together):
         if known[:, number].any():
             rate[number] = other
-            given[number] = rule_of(lab, (number, other), float(changes[other]), known)
+            given[number] = rule_of(lab, (number, other), float(changes[other]), known, tick)
     return tuple(given), tuple(rate)
 
 

@@ -17,7 +17,7 @@ from herringbone.analysis.stability.surrogates.inertia import by_acceleration
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError
-from herringbone.core.activity import tell
+from herringbone.core.process.activity import tell
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.foreign.linear_start import is_brought

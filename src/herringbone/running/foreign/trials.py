@@ -6,9 +6,10 @@ from contextlib import AbstractContextManager
 import numpy as np
 
 from herringbone.core import FmuError
-from herringbone.core.activity import activity
 from herringbone.core.declaring.declaration import is_node
 from herringbone.core.part import Part
+from herringbone.core.process.activity import activity
+from herringbone.core.wording import option
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, cost, find_signature
 from herringbone.cosim.structure.system import PartSpec
@@ -16,10 +17,7 @@ from herringbone.running.content import contents_of_trials
 from herringbone.running.foreign.known_signatures import known_signature
 from herringbone.running.foreign.start_inputs import known_start_inputs
 
-_HERE = (
-    ", and runs in this process: no trials; in a child process (on Linux, without --in-process) "
-    "there are"
-)
+_HERE = ", and runs in this process: no trials; in a child process (on Linux, without %s) there are"
 _LEFT = "it can be instantiated once only, and one after another in a process is not as new"
 
 Instances = Callable[[PartSpec], AbstractContextManager[Callable[[], Part]]]
@@ -76,7 +74,9 @@ def signature_of(
     """
     inputs, outputs = (_reals(part, causality) for causality in ("input", "output"))
     if not has_further(part):
-        return _unknown(inputs, outputs, step, f"it can be instantiated once only{_HERE}")
+        return _unknown(
+            inputs, outputs, step, f"it can be instantiated once only{_HERE % option('in_process')}"
+        )
     if not inputs and any(v.causality == "input" for v in part.variables.values()):
         return _unknown(inputs, outputs, step, "its inputs are no reals: no trials")
     return _tried(part, make, inputs, outputs, step, content)

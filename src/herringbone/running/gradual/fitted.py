@@ -9,7 +9,7 @@ from herringbone.analysis.modes.slowest import slowest_oscillation
 from herringbone.analysis.stability.linear_parts import linear_network
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED, Surrogate
 from herringbone.core import HerringboneError
-from herringbone.core.activity import activity
+from herringbone.core.process.activity import activity
 from herringbone.cosim.structure.system import System
 from herringbone.running.foreign.linear_start import under_load
 from herringbone.running.foreign.speeding_up import speeding_up

@@ -15,10 +15,10 @@ import numpy as np
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError
-from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity
 from herringbone.core.part import Part, closing_all
 from herringbone.core.places.part_path import PartPath
+from herringbone.core.process.activity import activity
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.signature import Laboratory
 from herringbone.cosim.signature.trial import EndedError

@@ -6,10 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.stability import limits
-from herringbone.analysis.stability.limits import Stability, default_algorithms
-from herringbone.analysis.stability.steps.step_verdict import StepVerdict, step_verdicts
+from herringbone.analysis.stability.limits import Stability
+from herringbone.analysis.stability.steps.step_verdict import StepVerdicts, step_verdicts
 from herringbone.analysis.stability.surrogates.operating_point import linear_at
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import Algorithm, parse_algorithm, refuse_adaptive
 from herringbone.cosim.cell.policy import foreign_fmus_housed
 from herringbone.cosim.structure.system import System
@@ -45,7 +45,7 @@ def stability(
     longest_trial: int | None = None,
     most_trial_steps: int | None = None,
     progress: Progress = lambda algorithm: None,
-) -> Stability | tuple[StepVerdict, ...]:
+) -> Stability | StepVerdicts:
     """Stable steps of coupling algorithms, bonds, and a recommended algorithm and step.
 
     They are predicted from the linear parts at the start of the scene; see `docs/coupling.md`.
@@ -64,8 +64,8 @@ def stability(
         progress: see `Progress`.
 
     Returns:
-        What is known, which `str` tells as the command does; with `step` a verdict of each
-        algorithm, with `stable`, `growth` and `lines()`.
+        What is known, or with `step` a verdict of each algorithm, with `stable`, `growth` and
+        `lines()`; `str` tells either as the command does.
 
     Raises:
         HerringboneError: something about the input is wrong, or nothing can be predicted.
@@ -82,9 +82,8 @@ def stability(
         known_before(system, scene, speed, torque, wishes, told.append) as found,
     ):
         if step is not None:
-            return step_verdicts(
-                found.system, chosen or default_algorithms(), step, progress, found.strangers
-            )
+            verdicts = verdicts_before(found, chosen, step, progress)
+            return StepVerdicts(verdicts, (*told, *verdicts.notes, *map(str, remarks)))
         known = stability_before(found, chosen, tolerance, simulate, progress)
         return replace(known, notes=(*told, *known.notes, *map(str, remarks)))
 
@@ -141,3 +140,11 @@ def stability_before(
         remember=of.known,
     )
     return replace(found, notes=(*of.missing, *linear_at(of.strangers), *found.notes))
+
+
+def verdicts_before(
+    of: Predictable, algorithms: Sequence[Algorithm], step: float, progress: Progress
+) -> StepVerdicts:
+    """What happens to a predictable system at one step [s]; arguments as of `stability`."""
+    found = step_verdicts(of.system, algorithms, step, progress, of.strangers)
+    return StepVerdicts(found, (*found.notes, *linear_at(of.strangers)))

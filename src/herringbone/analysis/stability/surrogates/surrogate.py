@@ -21,8 +21,8 @@ from herringbone.analysis.stability.surrogates.identification import (
 )
 from herringbone.analysis.stability.surrogates.trials import MOST_LENGTHS, Trials
 from herringbone.core.declaring.variable import NODES
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import PartVariable
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.rotation import InputRule
