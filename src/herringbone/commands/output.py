@@ -3,6 +3,7 @@
 import contextlib
 import gc
 import logging
+import os
 import signal
 import sys
 import tempfile
@@ -34,8 +35,13 @@ def say(text: str) -> None:
 
 
 def show(text: str) -> None:
-    """What a command was asked for."""
-    sys.stdout.write(text + "\n")
+    """What a command was asked for; nothing more where who reads has left, as `head` does."""
+    try:
+        sys.stdout.write(text + "\n")
+        sys.stdout.flush()
+    except BrokenPipeError:
+        with Path(os.devnull).open("w") as nowhere:
+            os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
 
 @contextlib.contextmanager
