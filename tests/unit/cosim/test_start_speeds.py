@@ -70,7 +70,7 @@ def test_a_rotor_at_rest_inside_a_part_meets_a_gear_that_turns():
     assert line.startswith("fly: what is behind its shaft at flange.phi turns at 0 rad/s")
     assert "gear.w = 104.7 rad/s" in line
     assert '(values={"fly.rotor.speed": 104.7})' in line
-    assert "0 rad/s, by a parameter of gear, which declares none in rad/s" in line
+    assert "0 rad/s, by a start value of gear: it has no parameter in rad/s" in line
     with words_of_commands():
         (line,) = lines_inside(0.01, FAST)
     assert "(--set fly.rotor.speed=104.7)" in line

@@ -85,7 +85,7 @@ def _to_set(part: Part, speed: str) -> str:
     named = [name for name in known if part.variables[name].unit == _SPEED]
     if named:
         return " or ".join(setting(f"{part.name}.{name}", speed) for name in named[:_SHOWN])
-    return f"{speed} {_SPEED}, by a parameter of {part.name}, which declares none in {_SPEED}"
+    return f"{speed} {_SPEED}, by a start value of {part.name}: it has no parameter in {_SPEED}"
 
 
 def _was_stepped(part: Part) -> bool:
