@@ -27,7 +27,7 @@ from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.twin.condensed.lean import WHOLE
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.measured import DEGREES
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.running.operating.lean import lean_of
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes, prepared

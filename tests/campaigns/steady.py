@@ -32,7 +32,7 @@ from herringbone.analysis.steady.searching.guess import beginnings, standing
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.fused.core import Steps
 from herringbone.core import HerringboneError
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 
 TEETH = ((19, 67), (19, 30), (20, 85), (23, 71))
 GROUPS = ("bearing_force", "seat_velocity")

@@ -18,6 +18,7 @@ from herringbone.analysis.at_rest import Rest
 from herringbone.analysis.rigid_rotation import names_of_states, rigid_rotation, steady_rows
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
+from herringbone.core.wording import option
 
 _TURN, _TURNS = 0.02, 32
 """Between angles that are tried [rad], and how many: over two meshes of 20 teeth."""
@@ -82,7 +83,7 @@ def _refuse_unbalanced(twin: Twin, speed: str, accelerations: np.ndarray) -> Non
         raise NoBalanceError(
             f"no steady rotation of '{twin.system.name}' was found: {speed} changes by "
             f"{least:.4g} rad/s^2 at any angle; look for a load there that nothing balances, or "
-            "start with --start rest"
+            f"start with {option('start', 'rest')}"
         )
 
 

@@ -22,7 +22,7 @@ from herringbone.analysis.swung_out import swung_out
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.declaring.roles import Quantity, Role
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 _KEPT = 1e-3

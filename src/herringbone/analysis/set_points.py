@@ -7,6 +7,7 @@ from herringbone.components.registry import component
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaring.roles import GEARS, PortKind, Quantity, Role
 from herringbone.core.declaring.variable import Causality
+from herringbone.core.wording import setting
 from herringbone.cosim.structure.system import System
 
 SPEED, TORQUE = "speed", "torque"
@@ -51,7 +52,7 @@ def set_point(system: System, name: str) -> SetPoint | None:
     if len(found) > 1:
         raise StructureError(
             f"{name}: {system.name} has the set points {', '.join(map(str, found))}; vary them "
-            "with --set"
+            f"with {setting(str(found[0]), '...')}"
         )
     if not found:
         _check_free(system, name)
@@ -103,10 +104,10 @@ def _check_free(system: System, name: str) -> None:
         at_pinion(system, **{name: 1.0})
     except (ParameterError, StructureError):
         known = [str(p.name) for p in system.parts if p.component and _drives(p.component)]
-        such_as = f", such as {known[0]}" if known else ""
+        such_as = setting(f"{known[0] if known else 'PART'}.NAME", "...")
         raise ParameterError(
             f"{name}: no part of {system.name} declares a {QUANTITIES[name]}; vary what drives and "
-            f"loads it with --set{such_as}{_start_speed(system) if name == SPEED else ''}"
+            f"loads it with {such_as}{_start_speed(system) if name == SPEED else ''}"
         ) from None
 
 
@@ -118,8 +119,8 @@ def _start_speed(system: System) -> str:
     pairs = [n for n in anatomy(system).with_role(Role.GEAR_PAIR) if not system.part(n).foreign]
     if not pairs or not system.foreign_parts:
         return ""
-    speeds = " and ".join(f"{_speed_of(system, pair)}=RAD_PER_S" for pair in pairs)
-    return f"; where the start is no equilibrium, --set {speeds} is the gears' speed, else 0"
+    speeds = " and ".join(setting(_speed_of(system, pair), "RAD_PER_S") for pair in pairs)
+    return f"; where the start is no equilibrium, {speeds} is the gears' speed, else 0"
 
 
 def _speed_of(system: System, pair: str) -> str:

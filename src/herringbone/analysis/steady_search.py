@@ -11,6 +11,7 @@ from herringbone.analysis.rigid_rotation import names_of_states, steady_rows, un
 from herringbone.analysis.slopes import slopes
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
+from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System
 
 _ITERATIONS, _PATIENCE = 40, 12
@@ -83,7 +84,8 @@ def steady_rotation(
     worst = [*(names[k] for k in keep), *zero][int(np.argmax(np.abs(r / rows)))]
     raise EquilibriumError(
         f"no steady rotation of '{system.name}' was found in {iteration + 1} iterations: {worst} "
-        "does not vanish; look for a load there that nothing balances, or start with --start rest"
+        "does not vanish; look for a load there that nothing balances, or start with "
+        f"{option('start', 'rest')}"
     )
 
 

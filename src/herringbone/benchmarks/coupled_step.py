@@ -15,8 +15,8 @@ import numpy as np
 from herringbone.analysis.anatomy import anatomy
 from herringbone.benchmarks.step_part import SCENE, STEP, SYSTEM, StepPart
 from herringbone.core.declaring.roles import Quantity, Role
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import closing_all
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import System

@@ -18,9 +18,9 @@ from herringbone.analysis.accuracy.apart import differences
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.course import Course
 from herringbone.analysis.twin.fused.measured import suited, values_at
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import closing_all
 from herringbone.core.places.part_path import PartPath
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import PartSpec, System

@@ -12,7 +12,7 @@ from herringbone.analysis.twin.fused import repeated
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.course import Course
 from herringbone.benchmarks.step_part import SCENE, STEP, SYSTEM, StepPart, least, timed
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.running.prepared import Wishes, prepared
 
 _STEPS = Steps(STEP, 4, closeness(1e-3))

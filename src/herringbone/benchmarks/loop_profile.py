@@ -14,8 +14,8 @@ import numpy as np
 
 from herringbone.benchmarks.step_part import SCENE, SYSTEM, least, timed
 from herringbone.core import HerringboneError
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import Part, closing_all
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.algorithms.adaptive import PreparedAdaptive
 from herringbone.cosim.algorithms.iterated import PreparedNodes

@@ -34,8 +34,8 @@ from herringbone.core import (
     HerringboneError,
     OutcomeKind,
 )
-from herringbone.core.termination import EXIT_CODE as TERMINATED
-from herringbone.core.termination import is_terminating
+from herringbone.core.process.termination import EXIT_CODE as TERMINATED
+from herringbone.core.process.termination import is_terminating
 from herringbone.cosim.cell.policy import Policy, foreign_fmu_policy
 
 
@@ -75,6 +75,7 @@ def _housing(options: argparse.Namespace) -> AbstractContextManager[Policy]:
         in_process=getattr(options, "in_process", None),
         deadline=getattr(options, "call_deadline", None),
         longest_trial=getattr(options, "longest_trial", None),
+        most_trial_steps=getattr(options, "most_trial_steps", None),
     )
 
 

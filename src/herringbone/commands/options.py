@@ -83,6 +83,11 @@ def add_cells(sub: argparse.ArgumentParser) -> None:
         "want",
     )  # fmt: skip
     sub.add_argument(
+        "--most-trial-steps", type=int, metavar="STEPS",
+        help="of all trials of a foreign FMU together, but for the test of a housing: what they "
+        "do not tell stays unknown, as a line says; any number if not given",
+    )  # fmt: skip
+    sub.add_argument(
         "--fresh", action="store_true",
         help="forget what trials of foreign FMUs told before, of all, and make them anew: of FMUs "
         "that read what their files do not show",

@@ -14,7 +14,7 @@ from types import FrameType
 
 from herringbone.core import HerringboneError
 from herringbone.core.errors import reason
-from herringbone.core.termination import forget_signals, note_signal
+from herringbone.core.process.termination import forget_signals, note_signal
 from herringbone.core.wording import words_of_commands
 
 _SELDOM = 20_000, 10, 5
@@ -22,6 +22,8 @@ _SELDOM = 20_000, 10, 5
 _NO_MEMORY = (
     "there is no memory left; end other programs, or ask for less, such as a longer --record-step"
 )
+_AGAIN = 0.01
+"""Time [s] after which an interruption that Python has dropped comes again."""
 _OPENSSL = "[digital envelope routines]"
 """How OpenSSL's hashes begin their ValueError; ours fail only where memory does."""
 
@@ -96,9 +98,33 @@ def terminable() -> Iterator[None]:
         return
     before = signal.signal(signal.SIGTERM, _terminated)
     try:
-        yield
+        with _not_dropped():
+            yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+@contextlib.contextmanager
+def _not_dropped() -> Iterator[None]:
+    """Context in which interruptions come again that Python drops.
+
+    It does where one comes in a destructor or a function that C has called, as LLVM's have.
+    """
+
+    def told(dropped: "sys.UnraisableHookArgs") -> None:
+        if issubclass(dropped.exc_type, KeyboardInterrupt):
+            signal.setitimer(signal.ITIMER_REAL, _AGAIN)
+        else:
+            tell(dropped)
+
+    tell, sys.unraisablehook = sys.unraisablehook, told
+    alarm = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, alarm)
+        sys.unraisablehook = tell
 
 
 @contextlib.contextmanager
@@ -131,8 +157,26 @@ def check_writable(folder: Path, file: Path | None = None) -> None:
             pass
     except OSError as error:
         why = f"nothing can be made in {there}" if error.errno == ENOENT else reason(error)
-        raise HerringboneError(
-            f"cannot write {file}: {why}; choose another file with -o"
+        raise (
+            HerringboneError(f"cannot write {file}: {why}; choose another file with -o")
             if file
-            else f"cannot write to {folder}: {why}; choose another folder with -o"
+            else _refused(folder, why)
         ) from error
+
+
+@contextlib.contextmanager
+def written_into(folder: Path) -> Iterator[None]:
+    """Context in which files of a folder are written, which is made if it is not there.
+
+    Raises:
+        HerringboneError: the folder cannot be made, or a file cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        yield
+    except OSError as error:
+        raise _refused(folder, reason(error)) from error
+
+
+def _refused(folder: Path, why: str) -> HerringboneError:
+    return HerringboneError(f"cannot write to {folder}: {why}; choose another folder with -o")

@@ -4,9 +4,8 @@ import argparse
 import csv
 from pathlib import Path
 
-from herringbone.commands.output import check_writable, say, show
-from herringbone.core import HerringboneError, ParameterError, ResourceError
-from herringbone.core.errors import reason
+from herringbone.commands.output import check_writable, say, show, written_into
+from herringbone.core import ParameterError, ResourceError
 from herringbone.core.places.files import is_file
 from herringbone.result.folder.names import UNITS
 
@@ -43,13 +42,8 @@ def run(options: argparse.Namespace) -> int:
     if study and (options.columns or options.highest):
         raise ParameterError("--columns and --highest are of runs; this is the folder of a sweep")
     check_writable(output)
-    try:
-        output.mkdir(parents=True, exist_ok=True)
+    with written_into(output):
         files = _study(options.folder, output) if study else _run(options, output)
-    except OSError as error:
-        raise HerringboneError(
-            f"cannot write to {output}: {reason(error)}; choose another folder with -o"
-        ) from error
     show("Files: " + (", ".join(map(str, files)) or "none: there is nothing to draw"))
     return 0
 

@@ -19,8 +19,8 @@ from herringbone.commands.options import (
     operating_point,
     replacements,
 )
-from herringbone.commands.output import check_writable, say, show
-from herringbone.core import HerringboneError, ParameterError
+from herringbone.commands.output import check_writable, say, show, written_into
+from herringbone.core import ParameterError
 from herringbone.core.places.files import write_whole
 from herringbone.running.operating.one_step import check_asked
 
@@ -115,25 +115,10 @@ def _of_step(
     of: "Predictable", algorithms: Sequence["Algorithm"], step: float, show: Callable[[str], None]
 ) -> Told:
     """What happens at one step [s], by algorithm."""
-    from herringbone.analysis.stability.limits import default_algorithms  # noqa: PLC0415
-    from herringbone.analysis.stability.steps.step_verdict import StepVerdict, step_verdicts  # noqa: PLC0415
-    from herringbone.analysis.stability.surrogates.operating_point import (  # noqa: PLC0415
-        linear_at,
-    )
+    from herringbone.running.operating.stability import verdicts_before  # noqa: PLC0415
 
-    verdicts: list[StepVerdict] = []
-    lines: list[str] = []
-    for algorithm in algorithms or default_algorithms():
-        try:
-            found = step_verdicts(of.system, [algorithm], step, show, of.strangers)
-            verdicts += found
-            lines += [line for verdict in found for line in verdict.lines()]
-        except ParameterError as error:
-            if algorithms:
-                raise
-            lines.append(f"{algorithm}: {error}")
-    lines += linear_at(of.strangers)
-    return Told("\n".join(lines), [{**asdict(v), "stable": v.stable} for v in verdicts])
+    found = verdicts_before(of, algorithms, step, show)
+    return Told(str(found), [{**asdict(v), "stable": v.stable} for v in found])
 
 
 def _of_all_steps(
@@ -174,12 +159,7 @@ def _written(told: Told, folder: Path) -> list[Path]:
         folder / "stability.txt": told.text,
         folder / "stability.json": json.dumps(told.summary),
     }
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with written_into(folder):
         for file, content in contents.items():
             write_whole(file, content + "\n")
-    except OSError as error:
-        raise HerringboneError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from error
     return list(contents)

@@ -77,7 +77,12 @@ TEMPLATES = {
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     sub.add_argument("kind", help=", ".join(TEMPLATES))
-    sub.add_argument("-o", "--output", type=Path, help="file to write; shown if not given")
+    sub.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        help="file to write, of a system FOLDER/system.toml; shown if not given",
+    )
 
 
 def template(kind: str, output: Path | None) -> str:

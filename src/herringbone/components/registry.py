@@ -25,6 +25,7 @@ _MODULES = (
     "drivetrain.torque_source",
     "drivetrain.speed_source",
     "drivetrain.freewheel",
+    "drivetrain.rising_value",
 )
 """Each defines the component of its name, in capitals. The first one of a role is the usual one."""
 

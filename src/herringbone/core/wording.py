@@ -3,6 +3,7 @@
 Who types commands reads `--record-step 1e-4`, who writes scripts `record_step=1e-4`.
 """
 
+import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -29,17 +30,24 @@ def several_values(name: str) -> str:
     return f"--{name} 500:3000:26" if _as_options[0] else f"{name}=[100.0, 200.0, 300.0]"
 
 
-def option(name: str, value: float | str | bool | None = None) -> str:
+def option(name: str, value: float | str | bool | list[str] | None = None) -> str:
     """An option, such as `--record-step 1e-4`, or the argument, `record_step=1e-4`.
 
     Args:
         name: of the argument.
-        value: to be given; True of a switch; None: the name alone.
+        value: to be given; True of a switch, False of one that is on unless `--no-NAME` is given;
+            a list where an option is given once for each; None: the name alone.
     """
+    if isinstance(value, list):
+        if _as_options[0]:
+            return " ".join(option(name, one) for one in value)
+        return f"{name}={json.dumps(value)}"
     if not _as_options[0]:
         shown = f'"{value}"' if isinstance(value, str) else _shown(value)
         return name if value is None else f"{name}={shown}"
     dashed = f"--{name.replace('_', '-')}"
+    if value is False:
+        return f"--no-{dashed[2:]}"
     return dashed if value is None or value is True else f"{dashed} {_shown(value)}"
 
 

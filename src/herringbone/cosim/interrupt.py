@@ -8,7 +8,7 @@ import signal
 import threading
 from types import FrameType
 
-from herringbone.core.termination import note_signal
+from herringbone.core.process.termination import note_signal
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from herringbone.core.activity import activity
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.activity import activity
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.gears.finite_elements import FiniteElementMesh
 from herringbone.gears.job import GearJob
 from herringbone.gears.job_stiffness import stiffness_for

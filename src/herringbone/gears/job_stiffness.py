@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from herringbone.core import ParameterError
-from herringbone.core.activity import activity
+from herringbone.core.process.activity import activity
 from herringbone.gears.job import GearJob
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness, Uncertainty
 from herringbone.gears.stiffness.methods import (

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from herringbone.analysis.steady.set_points import Point
 from herringbone.core import ParameterError
-from herringbone.core.activity import tell
 from herringbone.core.given import check_called
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.activity import tell
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import AUTO, LI, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.cosim.simulation import check_grid, check_records
@@ -58,6 +58,7 @@ def run(
     in_process: bool | None = None,
     call_deadline: float | None = None,
     longest_trial: int | None = None,
+    most_trial_steps: int | None = None,
     reference: bool = False,
     verify: bool = False,
     fuse: bool = False,
@@ -109,6 +110,8 @@ def run(
             not given.
         longest_trial: steps of a trial in the test of what a housing FMU must do; longer ones are
             left out. All if not given.
+        most_trial_steps: steps of all trials of a foreign FMU together, before the run; what they
+            do not tell stays unknown, and a line says so. Any number if not given.
         reference: also solve the monolithic twin, and report the errors against it.
         verify: also run with half the macro step and half the inner steps, and report how far
             apart both are, see `running.steps.verification`; for systems that have no twin.
@@ -155,7 +158,10 @@ def run(
     with (
         one_blas_thread(),
         foreign_fmu_policy(
-            in_process=in_process, deadline=call_deadline, longest_trial=longest_trial
+            in_process=in_process,
+            deadline=call_deadline,
+            longest_trial=longest_trial,
+            most_trial_steps=most_trial_steps,
         ),
         placed(output, recorded, overwrite=overwrite) as place,
     ):

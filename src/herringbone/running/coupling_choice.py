@@ -8,9 +8,11 @@ from typing import NamedTuple
 from herringbone.analysis.stability.instability import warn_if_unstable
 from herringbone.analysis.stability.steps.clock_grid import clocks_of
 from herringbone.core import HerringboneError
-from herringbone.core.activity import activity
 from herringbone.core.part import Part
+from herringbone.core.process.activity import activity
+from herringbone.core.wording import option
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi, choose_algorithm, start_step
+from herringbone.cosim.cell.policy import policy
 from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping
 from herringbone.cosim.structure.system import System
 from herringbone.result.budget import BudgetRow
@@ -140,7 +142,7 @@ def _other_lengths(system: System, parts: Sequence[Part], step: float) -> Iterat
         if proposed and not math.isclose(proposed, step):
             yield (
                 f"{part.name} takes steps of one length only, and proposes {proposed:g} s: if it "
-                f"refuses {step:g} s, use --step {proposed:g}"
+                f"refuses {step:g} s, use {option('step', proposed)}"
             )
 
 
@@ -192,4 +194,7 @@ def _with_surrogates(
             except HerringboneError as error:
                 raise _UnknownError(str(error)) from error
         loaded = speeding_up(turned_back(under_load(system)), found.strangers)
-        return warn_if_unstable(loaded, algorithm, step, t_end, strangers=found.strangers)
+        warning = warn_if_unstable(loaded, algorithm, step, t_end, strangers=found.strangers)
+    if not warning and (ended := policy().trials_ended):
+        raise _UnknownError(f"no more trials of {', '.join(ended)} are made")
+    return warning

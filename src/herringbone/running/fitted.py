@@ -8,6 +8,7 @@ from herringbone.analysis.figures.sensing.sensors import check_sensors
 from herringbone.analysis.figures.system_housings import misplaced_seats
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Role
+from herringbone.core.wording import option
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.gears.job import GearJob
@@ -60,7 +61,8 @@ def with_files(system: System, scene: Scene, wishes: "Wishes", folder: Path) -> 
     housings = housings_of(system, scene, wishes)
     if (gears or housings) and is_ssp(folder):
         raise ParameterError(
-            f"{folder}: an .ssp file sets all values by name; --gear and --housing are of systems"
+            f"{folder}: an .ssp file sets all values by name; {option('gear')} and "
+            f"{option('housing')} are of systems"
         )
     data, fmus = split_housings(housings)
     replaced = {**wishes.replace_parts, **fmus}

@@ -8,6 +8,7 @@ from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key, versions_of
 from herringbone.core.caching.tried import tried_folder
 from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.cell.policy import policy
 from herringbone.cosim.structure.system import System
 from herringbone.running.content import contents_of_system
 
@@ -42,7 +43,8 @@ class KnownLimits:
             bands = tuple((low, high) for low, high in known.pop("unstable_bands"))
             return StepLimits(unstable_bands=bands, **known)
         found = find()
-        keep(file, asdict(found))
+        if not policy().trials_ended:  # a further run may tell more
+            keep(file, asdict(found))
         return found
 
     def _key(self, algorithm: Algorithm, simulated: bool) -> str:

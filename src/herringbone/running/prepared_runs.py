@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
-from herringbone.core.activity import activity
 from herringbone.core.energy_report import Verdict
+from herringbone.core.process.activity import activity
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import choose_kind

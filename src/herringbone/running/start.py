@@ -1,18 +1,20 @@
 """Start values of a run: equilibrium, the thesis' gradual load, or rest."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 
 from herringbone.analysis.steady_search import SCALE
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import EquilibriumError
-from herringbone.core.activity import activity
-from herringbone.core.declaring.roles import Quantity
+from herringbone.core.process.activity import activity
 from herringbone.core.wording import option, setting
 from herringbone.cosim.structure.system import System, Values
+from herringbone.running.gradual.fitted import fitted_ramp
+from herringbone.running.gradual.raised import Raised, raised
+from herringbone.running.gradual.ramp import LOAD_RAMP_TIME, ramp_times, ramps, rising
+from herringbone.running.known_parts import known_parts
 from herringbone.running.remembered_answers import start_of_known
 from herringbone.running.settling.flanks import loaded_settled_start
-from herringbone.running.settling.ramp import LOAD_RAMP_TIME, fitted_ramp
 from herringbone.running.settling.stranger import NoSettledStartError
 from herringbone.scenes import Scene, Start
 
@@ -38,7 +40,7 @@ def started(
         HerringboneError: a value is wrong, or there is no equilibrium.
     """
     system = system.with_values(scene.values)
-    notes, start, ramp_time = system.notes, scene.start, LOAD_RAMP_TIME
+    notes, start = system.notes, scene.start
     if start is not Start.REST and len(system.foreign_parts) == len(system.parts):
         notes += ("all parts are foreign; the run starts with the values that they declare",)
         start = Start.REST
@@ -51,10 +53,13 @@ def started(
                 why = f"no equilibrium is known ({error})"
             else:
                 return system.with_values(_offsets(system, scene.start_offset)), (*notes, *lines)
-        start, ramp_time, instead = _gradual(system, scene.t_end)
+        system, start, instead = _gradual(system, scene, trial_step)
         notes += (f"{', '.join(system.foreign_parts)}: foreign, so {why}; {instead}",)
-    if start is Start.RAMP:
-        system = system.with_values(_ramps(system, ramp_time))
+    elif start is Start.RAMP:
+        if system.foreign_parts and trial_step is not None:
+            system, _, lines = raised(system, trial_step)
+            notes += lines
+        system = system.with_values(ramps(system, LOAD_RAMP_TIME))
     if start is not Start.REST:
         try:
             values, lines = equilibrium_values(system)
@@ -70,19 +75,30 @@ def started(
     return system.with_values(_offsets(system, scene.start_offset)), notes
 
 
-def _gradual(system: System, t_end: float) -> tuple[Start, float, str]:
-    """How a system begins that is in no equilibrium, its ramp's time [s], and both in words."""
-    given = ramp_times(system)
-    if not given:
+def _gradual(system: System, scene: Scene, trial_step: float | None) -> tuple[System, Start, str]:
+    """A system that is in no equilibrium with what rises, how it begins, and both in words."""
+    own = ramp_times(system)
+    found = raised(system, trial_step) if trial_step is not None else Raised(system, (), ())
+    system, acting = found.system, "".join(f"; {line}" for line in found.lines)
+    if not own and not found.inputs:
         words = (
-            "the run starts with the values that the parts declare, as no own part gives a load "
-            "that could rise; one that does, connected to a foreign set point, starts without "
-            f"load and lets it rise over a time that you set ({', '.join(_rising())})"
+            "the run starts with the values that the parts declare, as nothing is known that could "
+            "rise; what does, connected to a foreign set point, starts without load and lets it "
+            f"rise over a time that you set ({', '.join(rising())})"
         )
-        return Start.REST, 0.0, words
-    user = max(float(value) for value in given.values())
-    time = user or fitted_ramp(known_parts(system), t_end)
-    return Start.RAMP, time, f"the load rises from zero over {time:.3g} s instead"
+        return system, Start.REST, words + acting
+    user = max((float(value) for value in own.values()), default=0.0)
+    time, why = (user, "") if user else fitted_ramp(system, scene.t_end, trial_step)
+    system = system.with_values(ramps(system, time))
+    what = [*(["the load"] if own else []), *found.inputs]
+    words = (
+        f"{' and '.join(what)} {'rises' if len(what) == 1 else 'rise'} from zero over {time:.3g} s"
+    )
+    return (
+        system,
+        Start.RAMP if own else Start.REST,
+        f"{words} instead{why and f', as {why}'}{acting}",
+    )
 
 
 def _settled(system: System, step: float) -> tuple[System, tuple[str, ...]]:
@@ -137,30 +153,6 @@ def _unset(system: System, speed: str) -> str:
     return f", which nothing sets; {setting(speed, '...')} does"
 
 
-def _ramps(system: System, time: float) -> Values:
-    """Ramp times of all parts that have one and whose user gave none."""
-    return {path: given or time for path, given in ramp_times(system).items()}
-
-
-def ramp_times(system: System) -> Values:
-    """What users gave for the ramp times of all parts that have one; 0: nothing."""
-    return {
-        f"{part.name}.{ramp.name}": part.values.get(ramp.name) or 0.0
-        for part in system.parts
-        if part.component
-        for ramp in COMPONENTS[part.component].declaration.offered(Quantity.LOAD_RAMP_TIME)
-    }
-
-
-def _rising() -> list[str]:
-    """Ramp times of all components that have one."""
-    return [
-        f"{name}.{ramp.name}"
-        for name, kind in COMPONENTS.items()
-        for ramp in kind.declaration.offered(Quantity.LOAD_RAMP_TIME)
-    ]
-
-
 def equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:
     """Equilibrium of the known parts; what a foreign part would feed is taken as zero."""
     with activity(f"looking for the steady rotation of {system.name}"):
@@ -185,29 +177,9 @@ def _dropped(system: System, found: Values) -> Iterator[str]:
         more = f" and {len(lost) - _SHOWN} more" if len(lost) > _SHOWN else ""
         yield (
             f"not used: {', '.join(lost[:_SHOWN])}{more}: the start is the steady rotation, which "
-            "decides on all states; set what commands them, add by start_offset, or use --start "
-            f"{Start.REST}"
+            "decides on all states; set what commands them, add by start_offset, or use "
+            f"{option('start', Start.REST.value)}"
         )
-
-
-def known_parts(system: System) -> System:
-    """The system without its foreign parts and what they are connected to."""
-    return without_parts(system, system.foreign_parts)
-
-
-def without_parts(system: System, names: Collection[str]) -> System:
-    """The system without some parts; what they would feed keeps its start value."""
-    left_out = set(names)
-    return replace(
-        system,
-        parts=tuple(part for part in system.parts if part.name not in left_out),
-        connections=tuple(
-            pair
-            for pair in system.connections
-            if not left_out & {system.split(path)[0] for path in pair}
-        ),
-        sensors={k: spec for k, spec in system.sensors.items() if spec.part not in left_out},
-    )
 
 
 def _offsets(system: System, offsets: Values) -> Values:

@@ -11,6 +11,7 @@ from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Role
 from herringbone.core.given import check_called, check_mapping, check_reference, check_several
 from herringbone.core.places.files import as_texts, is_file
+from herringbone.core.wording import speaks_commands
 from herringbone.cosim.structure.system import System
 from herringbone.running.fitted import with_files
 from herringbone.running.loading import load_scene, load_system, with_options
@@ -149,8 +150,9 @@ def _suited(system: System, wishes: Wishes) -> Evaluator:
 
 
 def _of_runs(what: str) -> ParameterError:
+    by = "--transient" if speaks_commands() else "evaluator=Transient()"
     return ParameterError(
-        f"{what}: of runs, and steady states are without; evaluate the points by runs (--transient)"
+        f"{what}: of runs, and steady states are without; evaluate the points by runs ({by})"
     )
 
 

@@ -7,7 +7,8 @@ from pathlib import Path
 from statistics import median
 
 from herringbone.core import ParameterError
-from herringbone.core.activity import lasting
+from herringbone.core.process.activity import lasting
+from herringbone.core.wording import option
 from herringbone.result.folder.typed import as_json
 from herringbone.studies.evaluators.levels import PERIOD
 from herringbone.studies.working.chain import Done
@@ -84,7 +85,8 @@ def check_room(ahead: Expected, folder: Path) -> None:
     if ahead.size > free:
         raise ParameterError(
             f"the study takes {ahead.size / _MEBIBYTE:.3g} MiB, but there are "
-            f"{free / _MEBIBYTE:.3g} MiB free in {folder}; ask for fewer points, or no --series"
+            f"{free / _MEBIBYTE:.3g} MiB free in {folder}; ask for fewer points, or no "
+            f"{option('series')}"
         )
 
 

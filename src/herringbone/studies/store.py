@@ -13,6 +13,7 @@ from typing import Any
 from herringbone.core import HerringboneError, ResourceError
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.places.files import PART, is_file
+from herringbone.core.wording import option
 from herringbone.result.folder.formatted import read_formatted
 from herringbone.result.folder.names import STUDY, State
 from herringbone.result.folder.run_file import RunFile, read_run_file
@@ -25,6 +26,8 @@ from herringbone.studies.working.chain import Done, read_so_far
 from herringbone.studies.working.so_far import Row, SoFar
 
 FORMAT = 1
+_VERSIONS = {"versions", "studies"}
+"""Settings that tell who has computed."""
 CHAINS, SERIES = "chains", "series"
 _CPU, _UNITS, _ROWS = "cpu_s", "units", "rows"
 
@@ -67,11 +70,9 @@ class StudyFolder:
         content = {"format": FORMAT, **asked}
         known = read_study(self.folder)
         if known is not None and known != content and not overwrite:
-            what = [n for n, v in content.items() if known.get(n) != v and n != "key"]
             raise HerringboneError(
-                f"{self.folder} holds another study ({', '.join(what) or 'settings'}); choose "
-                "another folder with -o, or --overwrite: chains that both have are not computed "
-                "again"
+                f"{self.folder} holds {_other(known, content)}; choose another folder, or "
+                f"{option('overwrite', True)}: chains that both have are not computed again"
             )
         write_text(self.folder / STUDY, json.dumps(content, indent=1) + "\n")
 
@@ -161,3 +162,14 @@ def read_study(folder: Path) -> dict[str, Any] | None:
         ResourceError: it cannot be read, or is of a later format.
     """
     return read_formatted(folder / STUDY, FORMAT)
+
+
+def _other(known: Mapping[str, Any], asked: Mapping[str, Any]) -> str:
+    """What a folder holds in place of what is asked for."""
+    of_both = known.get("settings"), asked.get("settings")
+    old, new = (of if isinstance(of, dict) else {} for of in of_both)
+    apart = [n for n, v in new.items() if old.get(n) != v]
+    what = [n for n, v in asked.items() if known.get(n) != v and n not in {"key", "settings"}]
+    if apart and not what and _VERSIONS.issuperset(apart):
+        return "this study as another version of the package, or of a library, computed it"
+    return f"another study ({', '.join([*what, *apart]) or 'settings'})"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from time import perf_counter
 
 from herringbone.core import HerringboneError, one_line
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.studies.working.executors import Workers, working
 from herringbone.thesis.entry import Entry, Outcome
 from herringbone.thesis.registry import ENTRIES

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from herringbone.analysis.stability.amplification import Amplification
-from herringbone.analysis.stability.growth import RIGID
+from herringbone.analysis.stability.growth import GROWTH, RIGID
 from herringbone.analysis.stability.linear_parts import linear_network, real_parts
 from herringbone.analysis.stability.steps.step_limits import step_limits
 from herringbone.components.in_process import InProcessPart
@@ -71,6 +71,7 @@ def limits(system, strangers, algorithm):
     if found.unstable_bands:
         high = min(high, math.sqrt(math.prod(found.unstable_bands[0])))  # narrow bands
     ends = [rates(low), rates(high)]
-    # What moves by less in a step is taken for the free rotation.
-    seen = math.sqrt(low * high) if ends[0][1] < RIGID < ends[1][1] else math.nan
+    # What does not oscillate, and moves by less in a step, is taken for the free rotation.
+    least = GROWTH if found.frequency > 0.0 else RIGID
+    seen = math.sqrt(low * high) if ends[0][1] < least < ends[1][1] else math.nan
     return limit, seen, found.residual, *zip(*ends, strict=True)

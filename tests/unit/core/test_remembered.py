@@ -10,7 +10,7 @@ from herringbone.components.resources.flat_csv import read_flat_csv
 from herringbone.core import ResourceError
 from herringbone.core.caching import remembered
 from herringbone.core.caching.remembered import Remembered, content_key
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 
 TEXT = "# units: load N\nload\n{}\n"
 

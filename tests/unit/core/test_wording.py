@@ -8,16 +8,20 @@ def told():
         option("record_step", 2e-5),
         option("overwrite", True),
         option("as_fmu"),
+        option("probe", False),
         option("start", "rest"),
+        option("outside", ["motor", "road"]),
         setting("motor.w0", 3.0),
         several_values("speed"),
     ]
 
 
 def test_scripts_and_commands_read_their_own_words():
-    assert told()[:3] == ["record_step=2e-05", "overwrite=True", "as_fmu"]
-    assert told()[3:] == ['start="rest"', 'values={"motor.w0": 3}', "speed=[100.0, 200.0, 300.0]"]
+    assert told()[:4] == ["record_step=2e-05", "overwrite=True", "as_fmu", "probe=False"]
+    assert told()[4:6] == ['start="rest"', 'outside=["motor", "road"]']
+    assert told()[6:] == ['values={"motor.w0": 3}', "speed=[100.0, 200.0, 300.0]"]
     with words_of_commands():
-        assert told()[:3] == ["--record-step 2e-05", "--overwrite", "--as-fmu"]
-        assert told()[3:] == ["--start rest", "--set motor.w0=3", "--speed 500:3000:26"]
+        assert told()[:4] == ["--record-step 2e-05", "--overwrite", "--as-fmu", "--no-probe"]
+        assert told()[4:6] == ["--start rest", "--outside motor --outside road"]
+        assert told()[6:] == ["--set motor.w0=3", "--speed 500:3000:26"]
     assert option("as_fmu") == "as_fmu"

@@ -1,5 +1,6 @@
 """A study is computed once, in chains that survive whatever is killed."""
 
+import json
 import os
 import signal
 import subprocess
@@ -89,6 +90,12 @@ def test_only_what_is_missing_is_computed(tmp_path):
     assert len(again) == 8  # a damaged chain
     with pytest.raises(HerringboneError, match="another study"):
         swept(tmp_path / "study", torque=[1.0], evaluator=Cheap(log=str(log)))
+    study = tmp_path / "study" / "study.json"
+    content = json.loads(study.read_text())
+    content["settings"]["versions"] = "of before"
+    study.write_text(json.dumps(content))
+    with pytest.raises(HerringboneError, match="this study as another version of the package"):
+        swept(tmp_path / "study", evaluator=Cheap(log=str(log)))
     before = log.read_text()
     swept(tmp_path / "study", torque=[1.0], evaluator=Cheap(log=str(log)), overwrite=True)
     assert log.read_text() == before  # the same chain

@@ -151,7 +151,7 @@ def test_system_file(refused, tmp_path, text, said):
         ("--step=1e-30", "in steps of 1e-30 s makes 1e+27 macro steps; use a longer step or a"),
         ("--t-end=1e30", "t_end = 1e+30 s in steps of 5e-05 s makes 2e+34 macro steps; use a"),
         ("--t-end=1e6 --record-step=1e-6 --step=1e-6", "1000000000001 records of "),
-        ("--t-end=1e6 --record-step=1e-6 --step=1e-6", "use a longer record_step (--record-step)"),
+        ("--t-end=1e6 --record-step=1e-6 --step=1e-6", "use a longer --record-step or a"),
         ("--step=0.1", "t_end = 0.001 s is shorter than one step of 0.1 s"),
         ("--record-step=1", "record_step = 1 s is longer than the run, t_end = 0.001 s"),
         ("--record-step=nan", "record_step = nan s: it must be positive and finite"),

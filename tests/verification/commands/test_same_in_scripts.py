@@ -6,7 +6,10 @@ from zipfile import ZipFile
 import pytest
 
 import herringbone as hb
+from herringbone.analysis.stability.limits import default_algorithms
 from herringbone.commands.main import BAD_INPUT, main
+from herringbone.core import ParameterError
+from herringbone.cosim.algorithms import ALGORITHMS
 
 ALGORITHM, STEP = "jacobi:order=1", 1e-4
 
@@ -78,6 +81,22 @@ def test_one_step_takes_no_runs(capsys):
         hb.stability("gearbox", step=STEP, simulate=True)
     assert main(["stability", "gearbox", "--step", "1e-4", "--simulate"]) == BAD_INPUT
     assert "--step asks about one step; leave --simulate out" in capsys.readouterr().err
+
+
+def test_algorithms_that_a_system_cannot_have_are_told_once(monkeypatch, capsys):
+    """Those that are named are refused."""
+
+    def refuse(self, network):
+        raise ParameterError("gear_mesh takes no signal nodes")
+
+    monkeypatch.setattr(ALGORITHMS["predict"], "prepare", refuse)
+    found = hb.stability("gearbox", step=STEP)
+    assert main(["stability", "gearbox", "--step", f"{STEP}"]) == 0
+    assert capsys.readouterr().out == f"{found}\n"
+    assert found.notes == ("predict: gear_mesh takes no signal nodes",)
+    assert len(found) == len(default_algorithms()) - 1
+    with pytest.raises(ParameterError, match="no signal nodes"):
+        hb.stability("gearbox", step=STEP, algorithms=["predict"])
 
 
 def test_a_results_folder_of_a_script(tmp_path, capsys):

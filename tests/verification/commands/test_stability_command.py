@@ -18,9 +18,9 @@ from herringbone.analysis.stability.limits import Stability, default_algorithms
 from herringbone.analysis.stability.linear_parts import MeshStiffness
 from herringbone.analysis.stability.recommendation import Ranking, Recommendation
 from herringbone.analysis.stability.report import stability_summary, stability_text
-from herringbone.analysis.stability.steps import step_verdict
 from herringbone.analysis.stability.steps.simulated_limit import nonlinear_limit
 from herringbone.analysis.stability.steps.step_limits import StepLimits
+from herringbone.analysis.stability.steps.step_verdict import StepVerdicts
 from herringbone.commands.main import main
 from herringbone.core import HerringboneError
 from herringbone.core.caching import answers
@@ -29,6 +29,7 @@ from herringbone.core.places.paths import CACHE_VARIABLE, PACKAGE, cache_root, c
 from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.structure.system_file import find_system
 from herringbone.plotting.stability_atlas import atlas_picture, write_atlas
+from herringbone.running.operating import stability as operating
 
 OF_PYTHON = (sys.prefix, sys.base_prefix, "/proc", "/dev", "/sys", "/usr", "/etc")
 """Where files of Python, of libraries and of the machine lie."""
@@ -176,13 +177,15 @@ def question(tmp_path, capsys):
 def test_an_answer_is_told_again(question, capsys, monkeypatch, tmp_path):
     """Until a file changes, be it by a remark."""
     told = [main(question), capsys.readouterr()]
-    found = step_verdict.step_verdicts
-    monkeypatch.setattr(step_verdict, "step_verdicts", None)
+    found = operating.verdicts_before
+    monkeypatch.setattr(operating, "verdicts_before", None)
     assert [main(question), capsys.readouterr()] == told
     assert main([*question, "--json"]) == 0
     (verdict,) = json.loads(capsys.readouterr().out)
     assert verdict["stable"] and "stable" in told[1].out
-    monkeypatch.setattr(step_verdict, "step_verdicts", lambda *a: [*found(*a), *found(*a)])
+    monkeypatch.setattr(
+        operating, "verdicts_before", lambda *a: StepVerdicts([*found(*a), *found(*a)])
+    )
     assert main(question) == 0 and capsys.readouterr().out == told[1].out
     (tmp_path / "mine" / "scenes" / "loaded.toml").open("a").write("# a remark\n")
     assert main(question) == 0 and capsys.readouterr().out == 2 * told[1].out

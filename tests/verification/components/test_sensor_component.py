@@ -253,7 +253,7 @@ def test_growth_of_a_step_is_the_same(algorithm, step, rig, observed):
 
 def test_neither_model_exchange_nor_one_component_takes_samples(observed):
     assert not has_model_exchange(VELOCITY_SENSOR)
-    with pytest.raises(StructureError, match=r"sensor: .* takes samples.*--outside sensor"):
+    with pytest.raises(StructureError, match=r'sensor: .* takes samples.*outside=\["sensor"\]'):
         make_composite(observed)
 
 

@@ -14,6 +14,7 @@ from herringbone.analysis.figures.operating_point import run_mesh_frequency, ste
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitudes_at_multiples
 from herringbone.analysis.figures.standstill import stands_still
 from herringbone.components.registry import COMPONENTS
+from herringbone.core.declaring.roles import Quantity
 from herringbone.core.places.files import is_file
 from herringbone.core.reading.texts import read_text
 from herringbone.result.result import TIME, Result
@@ -131,15 +132,23 @@ def changed_parameters(first: Result, second: Result) -> pd.DataFrame:
     """One row per parameter whose values differ by more than rounding and iterations leave.
 
     Those that follow from the others, forces under which parts start at rest, are marked as
-    "computed" and come last.
+    "computed" and come last. Inner steps that one of the runs does not take are left out.
     """
     ours, theirs = first.info.parameters, second.info.parameters
-    rows = [(n, ours.get(n, math.nan), theirs.get(n, math.nan)) for n in {**ours, **theirs}]
+    names = [n for n in {**ours, **theirs} if n not in {*_unused(first), *_unused(second)}]
+    rows = [(n, ours.get(n, math.nan), theirs.get(n, math.nan)) for n in names]
     apart = [row for row in rows if not math.isclose(*row[1:], rel_tol=_SAME_VALUE)]
     model = {**first.info.model, **second.info.model}
     found = [(*row, _computed(row[0], model)) for row in apart]
     found.sort(key=lambda row: row[3])
     return pd.DataFrame(found, columns=["parameter", "first", "second", "computed"])
+
+
+def _unused(result: Result) -> list[str]:
+    """Inner steps of parts that a run has fused into a core."""
+    known = result.info.anatomy
+    parts = known.parts if result.info.core else ()
+    return [column for part in parts for column in known.columns(part, Quantity.MICRO_STEP)]
 
 
 def _computed(name: str, model: Mapping[str, str]) -> bool:

@@ -31,6 +31,7 @@ from herringbone.analysis.stability.recommendation import (
 from herringbone.components.registry import COMPONENTS
 from herringbone.components.resources.stiffness_table import read_uncertainty
 from herringbone.core.declaring.roles import SIDES, Quantity, Role
+from herringbone.core.wording import option
 from herringbone.cosim.algorithms import parse_algorithm
 from herringbone.result.budget import BudgetRow, Known
 from herringbone.result.result import TIME, Result
@@ -126,19 +127,25 @@ def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
     if result.info.all_fused:
         return BudgetRow(source, _FORCE, None, Known.UNKNOWN, "nothing varies")
     if (estimate := result.info.estimate) is not None:
-        how = "by the differences of the forces in each step; --reference measures"
+        how = f"by the differences of the forces in each step; {_measures('reference')}"
         return BudgetRow(source, _FORCE, estimate["coupling"], Known.ESTIMATED, how)
     algorithm = parse_algorithm(result.info.algorithm)
     rule = algorithm.accurate_step
     if rule is None or not bond_frequency or result.info.slow:
         foreign = not COMPONENTS.keys() >= set(result.info.model.values())
-        measures = "--verify" if foreign else "--reference"
-        how = f"no rule for this algorithm and system; {measures} measures"
+        measures = _measures("verify" if foreign else "reference")
+        how = f"no rule for this algorithm and system; {measures}"
         return BudgetRow("coupling", _FORCE, None, Known.UNKNOWN, how)
     step = result.info.communication_step * bond_frequency / rule
     gears = result.parts_with(Role.GEAR_PAIR)
     value = rule_error(algorithm, step, apart=any(_separates(result, gear) for gear in gears))
-    return BudgetRow("coupling", _FORCE, value, Known.ESTIMATED, f"{SOURCE}; --reference measures")
+    how = f"{SOURCE}; {_measures('reference')}"
+    return BudgetRow("coupling", _FORCE, value, Known.ESTIMATED, how)
+
+
+def _measures(name: str) -> str:
+    """Which option measures what is estimated."""
+    return f"{option(name, True)} measures"
 
 
 def _inner_steps(result: Result) -> Iterator[BudgetRow]:

@@ -29,6 +29,7 @@ import numpy as np
 
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, hann_weight
 from herringbone.core import ParameterError
+from herringbone.core.wording import option
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -141,7 +142,8 @@ def order_map(
     if not rows:
         raise ParameterError(
             f"the run has {cycles[-1] - cycles[0]:.3g} cycles, too few for blocks of {block:g} "
-            f"with {FEWEST_SAMPLES} records; take shorter blocks or a shorter --record-step"
+            f"with {FEWEST_SAMPLES} records; take shorter blocks or a shorter "
+            f"{option('record_step')}"
         )
     middle, speed, amplitude, level = zip(*rows, strict=True)
     return OrderMap(np.array(middle), np.array(speed), orders, np.array(amplitude), np.array(level))

@@ -25,7 +25,7 @@ from herringbone.core.declaring.roles import Role
 from herringbone.core.part import Part, is_signal_node
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.signature import Kind, Laboratory, Signature, cost, find_signature
-from herringbone.cosim.signature.trial import Refused
+from herringbone.cosim.signature.trial import NOT_TRIED
 
 FLANGES = {Role.DRIVE: 1, Role.LOAD: 1, Role.COUPLING: 2}
 """How many flanges a role has."""
@@ -100,7 +100,7 @@ def check_flanges(
             )
             tell_cost(bench, part.name)
             return [*findings, *_behaviour(bench, progress)]
-    except Refused as error:
+    except NOT_TRIED as error:
         return [*findings, *_nothing(str(error), role)]
     except FmuError as error:
         return [*findings, judged("trial steps", False, str(error), "it starts and steps")]
@@ -173,7 +173,7 @@ def _once(name: str, test: Callable[[], Finding]) -> Finding:
         return test()
     except Diverged as error:
         return judged(name, False, str(error), "finite")
-    except Refused as error:
+    except NOT_TRIED as error:
         return not_tested(name, str(error))
 
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from herringbone.analysis.flange import rates, reaction, rotation, work
 from herringbone.analysis.flange.bench import Bench
 from herringbone.analysis.flange.variables import Flange
-from herringbone.core.activity import lasting, tell
+from herringbone.core.process.activity import lasting, tell
 from herringbone.cosim.signature.cost import PATIENCE
 
 OPTION = "--longest-trial"

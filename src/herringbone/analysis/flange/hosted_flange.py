@@ -24,7 +24,7 @@ from scipy.linalg import expm
 from herringbone.analysis.stability.growth import Growth, growth_of
 from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.analysis.stability.surrogates.identification import LinearModel
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 
 ORDERS = (0, 1, 2)
 SMALLEST, LARGEST = 1e-6, 1.0

@@ -16,7 +16,7 @@ from herringbone.analysis.flange.variables import Flange
 from herringbone.analysis.flange.work import CYCLES, periods
 from herringbone.core.declaring.units import R_MIN
 from herringbone.cosim.signature.rotation import InputRule
-from herringbone.cosim.signature.trial import Refused
+from herringbone.cosim.signature.trial import NOT_TRIED
 
 TEST = "w = dphi/dt"
 RATIO = 0.01
@@ -137,7 +137,7 @@ def turns(bench: Bench, flange: Flange) -> Finding:
         return not_tested(test, f"{TORQUE:g} N m hardly turns it")
     try:
         found = bench.run({flange.name: constant(torque)}, SPIN)
-    except Refused as error:
+    except NOT_TRIED as error:
         return not_tested(test, str(error))
     angle, w = found.of(flange.phi), found.of(flange.w)
     integral = _integral(w, bench.step)

@@ -23,7 +23,7 @@ from herringbone.analysis.flange.rates import hint
 from herringbone.analysis.flange.variables import Flange
 from herringbone.cosim.signature import Kind
 from herringbone.cosim.signature.rotation import InputRule
-from herringbone.cosim.signature.trial import Refused
+from herringbone.cosim.signature.trial import NOT_TRIED
 
 STEPS = 8
 HELD = 0.02
@@ -129,7 +129,7 @@ def _least(firsts: Sequence[float], share: Callable[[float], float]) -> float:
     for first in firsts:
         try:
             found.append(abs(share(first)))
-        except Refused as error:
+        except NOT_TRIED as error:
             refused = error
     if refused and not found:
         raise refused
@@ -137,8 +137,8 @@ def _least(firsts: Sequence[float], share: Callable[[float], float]) -> float:
 
 
 def _first_steps(bench: Bench) -> list[float]:
-    if bench.signature.tick:
-        return [_TICKS * bench.signature.tick]
+    if tick := bench.signature.tick or bench.signature.inner_tick:
+        return [_TICKS * tick]
     return [share * bench.step for share in _FIRST]
 
 

@@ -5,9 +5,9 @@ from time import perf_counter
 
 import numpy as np
 
-from herringbone.core.activity import lasting, tell
 from herringbone.core.declaring.roles import HALVES
 from herringbone.core.part import Part
+from herringbone.core.process.activity import lasting, tell
 from herringbone.core.wording import option
 from herringbone.cosim.loops.drive import drive
 from herringbone.cosim.signature.cost import PATIENCE
@@ -73,5 +73,5 @@ class Runs:
                 f"{name} is slow, {self.seconds:.2g} s a step: the tests of what a housing must do "
                 f"take {steps} steps, {lasting(steps * self.seconds)}; "
                 f"{option('longest_trial', short)} leaves those out that take the most, 'run' with "
-                "--no-probe all"
+                f"{option('probe', False)} all"
             )

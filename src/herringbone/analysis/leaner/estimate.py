@@ -32,7 +32,7 @@ from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure, alternating_rows
 from herringbone.analysis.twin.condensed.recorded.wanted import Wanted
 from herringbone.core import ParameterError
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 
 _STEPS = 2
 """Of Newton, from the motion of the whole model: the second one has what is of second order."""

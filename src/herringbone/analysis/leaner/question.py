@@ -10,7 +10,7 @@ from herringbone.analysis.leaner.views import View
 from herringbone.analysis.steady.harmonic_balance.fourier import on
 from herringbone.analysis.steady.outputs import harmonics
 from herringbone.analysis.steady.state import SteadyState
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 
 _SAME = 1e-6
 """Relative difference of mesh orders that are one."""

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.linalg
 
 from herringbone.analysis.figures.spectra import hann_weight
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 
 _LARGE = 0.1
 """Lines whose places are asked at every speed, over the largest one."""

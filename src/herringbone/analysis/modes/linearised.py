@@ -15,7 +15,7 @@ from herringbone.analysis.steady.of_system import SystemLaws
 from herringbone.analysis.twin.condensed.recorded.wanted import places_seen
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.core.declaring.roles import Role
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 _PLACES = 2048

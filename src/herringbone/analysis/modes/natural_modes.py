@@ -31,10 +31,10 @@ from herringbone.analysis.modes.linearised import Linearised, linearised, seen_r
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.core.facts import Facts
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
-_SLOWEST = 1e-6
+SLOWEST = 1e-6
 """Oscillation over the fastest rate below which it is rounding of rigid rotation."""
 
 
@@ -174,7 +174,7 @@ def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
         balanced, (scale, _) = matrix_balance(found.a, permute=False, separate=True)
         rates, left, right = eig(balanced, left=True, right=True)
     fastest = np.abs(rates).max(initial=0.0)
-    kept = np.flatnonzero(rates.imag > _SLOWEST * fastest)
+    kept = np.flatnonzero(rates.imag > SLOWEST * fastest)
     kept = kept[np.argsort(np.abs(rates[kept]), kind="stable")]
     rates, others = rates[kept], int(rates.size - 2 * kept.size) - _unused(found.a)
     left, right = left[:, kept] / scale[:, None], right[:, kept] * scale[:, None]

@@ -27,7 +27,7 @@ from herringbone.analysis.stability.steps.linear_part import CHANGE, OTHER_CHANG
 from herringbone.analysis.stability.steps.step_map import linear_part
 from herringbone.analysis.stability.surrogates.stand_in import StandIn
 from herringbone.core import HerringboneError, Instance
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, record_names

@@ -1,19 +1,31 @@
-"""Before a run: one line if its step is unstable."""
+"""Before a run: one line if its step is unstable, or stable by models of other speeds alone."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.growth import GROWTH, Growth
-from herringbone.analysis.stability.linear_parts import NO_STRANGERS, Strangers, linear_network
+from herringbone.analysis.stability.linear_parts import (
+    NO_STRANGERS,
+    Member,
+    Strangers,
+    linear_network,
+)
 from herringbone.analysis.stability.surrogates.operating_point import where
+from herringbone.analysis.stability.surrogates.stand_in import StandIn
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, Instance
 from herringbone.core.energy_report import hertz
 from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System
 
 _SHORTER, _ALIKE = 8.0, 0.1
 """A motion grows of itself if with so much shorter steps its rate is the same to this share."""
+_SPEED = "rad/s"
+_SLOW, _UNLIKE = 1.0, 0.05
+"""Speed [rad/s] that is rest, and share of a speed by which another one is alike."""
 _UNSEEN = 3.0
 """Powers of e that a motion may grow by in a run that still looks sound."""
 
@@ -27,6 +39,8 @@ def warn_if_unstable(
 ) -> str | None:
     """One line if an algorithm is unstable at a step, or None; one matrix at mean stiffness.
 
+    Of a stable one a line where models of foreign parts are of another speed than that of the run.
+
     Args:
         system: as it is started.
         algorithm: coupling algorithm.
@@ -38,13 +52,14 @@ def warn_if_unstable(
     too far from it, or a mesh is open at the start.
     """
     try:
-        members = linear_network(system, strangers=strangers)
-        amplification = Amplification(*members, algorithm)
+        network, members = linear_network(system, strangers=strangers)
+        turning = _other_speeds(network, members, strangers)
+        amplification = Amplification(network, members, algorithm)
         growth = amplification.growth(step)
     except HerringboneError:
         return None
     if growth.radius <= 1.0 + GROWTH:
-        return None
+        return turning
     if amplification.residual > PROMISED:
         return None
     if _grows_itself(amplification, growth, step):
@@ -57,6 +72,38 @@ def warn_if_unstable(
         f"grows by {100.0 * (growth.radius - 1.0):.3g} % per step, "
         f"{_in_time(growth, step, duration)}{_elsewhere(strangers)}; 'herringbone stability' shows "
         "the limits"
+    )
+
+
+def _other_speeds(network: Network, members: Sequence[Member], strangers: Strangers) -> str | None:
+    """A line where parts are linear at the speeds that they declare, and the run starts at others.
+
+    Args:
+        network, members: see `linear_network`, as they are at the start.
+        strangers: what stands for foreign parts.
+    """
+    found = []
+    for target, member in enumerate(members):
+        if not isinstance(member, StandIn) or strangers[member.name].at_start:
+            continue
+        model = member.surrogate
+        for c in network.inputs(target):
+            source = members[c.source]
+            unit = network.parts[c.source].variables[c.output].unit
+            if not isinstance(source, Instance) or unit != _SPEED:
+                continue
+            declared = float(model.start[model.inputs.index(c.input)])
+            now = float(source[c.output])
+            if max(abs(now), abs(declared)) >= _SLOW and abs(now - declared) >= _UNLIKE * abs(now):
+                found.append(
+                    f"{member.name}.{c.input} at {declared:.4g} and not {now:.4g} {_SPEED}"
+                )
+    if not found:
+        return None
+    return (
+        "that the step is stable is told by models of foreign parts at the speeds that they "
+        f"declare, not those at which the run starts: {', '.join(found)}; their start values "
+        "change that"
     )
 
 

@@ -25,9 +25,9 @@ from herringbone.analysis.stability.steps.step_limits import (
     step_limits,
 )
 from herringbone.core import HerringboneError, Instance, ParameterError
-from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.facts import Facts
+from herringbone.core.process.activity import activity
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, Jacobi
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance

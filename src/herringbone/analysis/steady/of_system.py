@@ -27,7 +27,8 @@ class SystemLaws:
         ideal: without what comes in over an angle, for ever.
     """
 
-    def __init__(self, system: Condensed, late: float, *, ideal: bool = False) -> None:
+    def __init__(self, system: Condensed, late: float, ideal: bool = False) -> None:
+        self._made_of = system, late, ideal
         self._calls, self._late = system.calls(), late
         twin = system.twin
         first = twin.layout.block_first
@@ -39,6 +40,10 @@ class SystemLaws:
             if ideal:
                 laws.ramp(block, math.inf)
         self._room: dict[int, Samples] = {}
+
+    def __reduce__(self) -> tuple[type["SystemLaws"], tuple[Condensed, float, bool]]:
+        """Made anew: addresses are those of a process."""
+        return SystemLaws, self._made_of
 
     def __call__(self, z: np.ndarray) -> Samples:
         """What they give at arguments (places, arguments); good until the next call."""

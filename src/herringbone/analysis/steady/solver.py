@@ -13,7 +13,7 @@ from herringbone.analysis.steady.state import SHOOTING, SteadyState
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.core import ParameterError
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 TOLERANCE = 1e-3

@@ -41,9 +41,12 @@ def radiated_power(
     return of_runs.radiated_power(run, housing, part=part)
 
 
-def radiated_powers(of: SteadyState | SettledState) -> dict[str, RadiatedPower]:
+def radiated_powers(of: Result | SteadyState | SettledState) -> dict[str, RadiatedPower]:
     """By housing, of those whose data are known and tell of their surface."""
-    known = of.run.info.anatomy if isinstance(of, SettledState) else anatomy(of.structure.system)
+    if isinstance(of, SteadyState):
+        known = anatomy(of.structure.system)
+    else:
+        known = (of.run if isinstance(of, SettledState) else of).info.anatomy
     found = {}
     for name in known.with_role(Role.HOUSING):
         with suppress(ParameterError, ResourceError):

@@ -20,8 +20,8 @@ from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core.declaring.units import R_MIN
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.places.part_path import PartPath
+from herringbone.core.process.one_thread import one_blas_thread
 
 BALANCE, SHOOTING, MARCH = "harmonic balance", "shooting", "march"
 """What may have found a state."""

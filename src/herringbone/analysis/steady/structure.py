@@ -18,7 +18,7 @@ from herringbone.analysis.twin.condensed.recorded.wanted import Wanted
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.core import StructureError, common_period
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 _MOST = 16

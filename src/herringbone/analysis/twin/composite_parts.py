@@ -13,6 +13,7 @@ from herringbone.analysis.twin.source import TwinLayout, twin_layout
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.resources.loader import NO_FILE, Refusal, ResourceLoader
 from herringbone.core import Declaration, Instance, StateVector, StructureError, Text
+from herringbone.core.wording import option
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 
@@ -45,7 +46,7 @@ def make_parts(system: System) -> Parts:
         if instance.component.samples:
             raise StructureError(
                 f"{instance.name}: {instance.component.name} takes samples, which a system as one "
-                f"component cannot; keep it outside (--outside {instance.name})"
+                f"component cannot; keep it outside ({option('outside', [instance.name])})"
             )
     instances.sort(key=lambda i: (_hidden(i) > 0, _visible(i) == 0))
     if sum(_hidden(i) > 0 and _visible(i) > 0 for i in instances) > 1:

@@ -19,10 +19,10 @@ from herringbone.analysis.twin.source import TwinLayout, twin_layout, twin_sourc
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, StructureError
-from herringbone.core.activity import activity
 from herringbone.core.caching.generated import load_generated
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.caching.remembered import Remembered
+from herringbone.core.process.activity import activity
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 
@@ -111,9 +111,14 @@ class Twin:
         self._by_calls = CalledTwin(self.network, self.instances, self.layout)
         self.block = np.concatenate([i.block for i in self.instances])
 
+    def __reduce__(self) -> tuple[Callable[..., "Twin"], tuple[System, dict[str, np.ndarray]]]:
+        """Made anew, with the same values: what is compiled is that of a process."""
+        return _with_values, (self.system, {i.name: i.block for i in self.instances})
+
     def with_blocks(self, blocks: Mapping[str, np.ndarray]) -> "Twin":
         """The same with other values, tables among them, in the blocks of some parts, by name."""
-        found = copy(self)
+        found = object.__new__(Twin)
+        found.__dict__.update(self.__dict__)
         found.instances = [copy(instance) for instance in self.instances]
         for instance in found.instances:
             instance.block = blocks.get(instance.name, instance.block)
@@ -254,3 +259,7 @@ class Twin:
             if progress:
                 progress(solver.t, float(times[-1]))
         return solver.y
+
+
+def _with_values(system: System, blocks: Mapping[str, np.ndarray]) -> Twin:
+    return Twin(system).with_blocks(blocks)

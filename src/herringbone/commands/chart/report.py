@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.analysis.accuracy.work_precision import MARKS, Reach, WorkPrecision
-from herringbone.core import HerringboneError, OutcomeKind
+from herringbone.commands.output import written_into
+from herringbone.core import OutcomeKind
 from herringbone.core.places.files import write_whole
 from herringbone.running.charting.chart import chart
 
@@ -50,15 +51,10 @@ def _write(found: WorkPrecision, folder: Path) -> list[str]:
     from herringbone.plotting.work_precision import write_chart  # noqa: PLC0415 (lazy)
 
     files = [folder / name for name in _FILES]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with written_into(folder):
         found.to_csv(files[0])
         write_whole(files[1], json.dumps(found.summary(), indent=1) + "\n")
         write_chart(found, files[2])
-    except OSError as error:
-        raise HerringboneError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from error
     return [str(file) for file in files]
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from herringbone.commands.gear.loaded import flank_text
 from herringbone.commands.gear.tables import gear_figures, gear_tables
-from herringbone.core import HerringboneError
+from herringbone.commands.output import written_into
 from herringbone.core.places.files import write_whole
 from herringbone.gears.files.read_job import read_job
 from herringbone.gears.files.table_file import table_text
@@ -79,14 +79,9 @@ def _write(stiffness: MeshStiffness, loaded: Loaded, folder: Path, name: str) ->
     from herringbone.plotting.gears.gear_pair import write_gear_pair_picture  # noqa: PLC0415 (lazy)
 
     texts = {TABLE: table_text(stiffness), FLANKS: flank_text(stiffness.pair, loaded.flanks)}
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with written_into(folder):
         for file_name, text in texts.items():
             write_whole(folder / file_name, text)
         write_gear_pair_picture(stiffness, f"Gear pair {name}", folder / PICTURE)
         write_gear_load_picture(loaded, f"Gear pair {name}", folder / LOAD_PICTURE)
-    except OSError as error:
-        raise HerringboneError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from error
     return [folder / file_name for file_name in (*texts, PICTURE, LOAD_PICTURE)]

@@ -16,7 +16,7 @@ from herringbone.commands.output import check_writable, limits_told, say, show
 from herringbone.commands.run.options import SLOW, add_options
 from herringbone.core import EXIT_CODES, Outcome, OutcomeKind, ParameterError
 from herringbone.core.places.files import is_folder
-from herringbone.core.termination import is_terminating
+from herringbone.core.process.termination import is_terminating
 from herringbone.running.reporting.progress import Bar
 
 if TYPE_CHECKING:

@@ -10,9 +10,8 @@ from herringbone.commands.options import (
     add_start_values,
     given_by,
 )
-from herringbone.commands.output import check_writable, say, show
-from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.errors import reason
+from herringbone.commands.output import check_writable, say, show, written_into
+from herringbone.core import ParameterError
 from herringbone.core.places.files import write_whole
 
 if TYPE_CHECKING:
@@ -87,8 +86,7 @@ def _write(found: "NaturalModes", options: argparse.Namespace) -> list[Path]:
     folder: Path = options.output
     table, diagram, shapes = (folder / name for name in FILES)
     gifs = {mode: folder / f"mode_{mode}.gif" for mode in options.animate}
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with written_into(folder):
         write_whole(table, found.table.to_csv(index=False))
         campbell(found, highest=options.highest, speed=options.speed).savefig(diagram)
         written = [table, diagram]
@@ -100,10 +98,6 @@ def _write(found: "NaturalModes", options: argparse.Namespace) -> list[Path]:
             written.append(shapes)
         for mode, file in gifs.items():
             animate_mode(found, mode, file)
-    except OSError as error:
-        raise HerringboneError(
-            f"cannot write to {folder}: {reason(error)}; choose another folder with -o"
-        ) from error
     return [*written, *gifs.values()]
 
 

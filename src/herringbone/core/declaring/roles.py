@@ -86,6 +86,8 @@ class Quantity(StrEnum):
     INERTIA = "inertia"
     MICRO_STEP = "micro step"
     LOAD_RAMP_TIME = "load ramp time"
+    RISING_VALUE = "rising value"
+    FINAL_VALUE = "final value"
     SEAT_MOTION = "seat motion"
     MODES = "modes"
     SHAPES = "shapes"

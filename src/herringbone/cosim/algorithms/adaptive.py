@@ -46,8 +46,8 @@ from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT, run_adaptive
 from herringbone.cosim.loops.adaptive_step.step_choice import (
     AIM,
     AIM_BETWEEN_ROWS,
-    SAVED,
-    SAVED_BETWEEN_ROWS,
+    HELD,
+    HELD_BETWEEN_ROWS,
 )
 from herringbone.cosim.loops.adaptive_step.step_error import (
     LARGEST,
@@ -185,7 +185,7 @@ class PreparedAdaptive(PreparedNodes):
             last=self._last,
             memory=MEMORY * max(TICKS * self._tick, LARGEST_STEP),
             aim=AIM_BETWEEN_ROWS if self._every else AIM,
-            saved=SAVED_BETWEEN_ROWS if self._every else SAVED,
+            held=HELD_BETWEEN_ROWS if self._every else HELD,
             inner=lengthened(self.network, self.inner, self._tick),
             times=self._record.row_times,
             room=room_for(measured.output.size),

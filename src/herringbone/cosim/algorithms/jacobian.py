@@ -3,7 +3,7 @@
 import numpy as np
 
 from herringbone.core import HerringboneError
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.cosim.loops.node_jacobian import sensitivity

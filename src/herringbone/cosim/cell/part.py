@@ -11,6 +11,7 @@ from fmpy.model_description import ModelDescription
 from herringbone.core import FmuError, HerringboneError
 from herringbone.core.part import STRUCTURE, Addresses, PartVariable, Value, ValueOrArray
 from herringbone.core.places.temporary import remove_temporary_folder
+from herringbone.core.wording import option
 from herringbone.cosim.cell.block import INSTANCE, KINDS, READS, STATES, fits
 from herringbone.cosim.cell.calls import derivatives, signals, states
 from herringbone.cosim.cell.policy import Remark, policy
@@ -129,7 +130,8 @@ class CellPart:
             self.variables = resized(self.model, name, int(float(value)))  # type: ignore[arg-type]
             if not fits(len(self.variables), int(self._cell.side.record["capacity"][0])):
                 raise FmuError(
-                    f"{self.name}.{name} = {value!r}: too many signals for a cell; use --in-process"
+                    f"{self.name}.{name} = {value!r}: too many signals for a cell; use "
+                    f"{option('in_process', True)}"
                 )
 
     def get(self, names: Sequence[str]) -> list[float]:

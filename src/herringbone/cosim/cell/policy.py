@@ -2,6 +2,7 @@
 
 import os
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -50,13 +51,23 @@ class Policy:
         remarks: what was found out.
         idle: cells by their FMU that may be used again; None: each is used once.
         longest_trial: steps that a trial may have in the test of a role; None: any number.
+        most_trial_steps: that all trials of a part may have together; None: any number.
+        taken: steps of trials, by part.
     """
 
     in_process: bool = False
     deadline: float = DEADLINE
     longest_trial: int | None = None
+    most_trial_steps: int | None = None
+    taken: Counter[str] = field(default_factory=Counter)
     remarks: list[Remark] = field(default_factory=list)
     idle: dict[str, list["Cell"]] | None = None
+
+    @property
+    def trials_ended(self) -> tuple[str, ...]:
+        """Parts of which no further trials are made."""
+        most = self.most_trial_steps
+        return tuple(name for name, n in self.taken.items() if most is not None and n >= most)
 
 
 _policy: ContextVar[Policy | None] = ContextVar("cell_policy", default=None)
@@ -73,6 +84,7 @@ def foreign_fmu_policy(
     in_process: bool | None = None,
     deadline: float | None = None,
     longest_trial: int | None = None,
+    most_trial_steps: int | None = None,
 ) -> Iterator[Policy]:
     """Context in which foreign FMUs run so.
 
@@ -80,6 +92,7 @@ def foreign_fmu_policy(
         in_process: in this process; None: as around this context, or else in cells.
         deadline: longest time of a call [s]; if not given as around this context, or `DEADLINE`.
         longest_trial: steps of a trial in the test of a role; None: as around this context, or any.
+        most_trial_steps: of all trials of a part together; likewise.
 
     Raises:
         ParameterError: the deadline is not positive, or a trial has no step.
@@ -88,11 +101,16 @@ def foreign_fmu_policy(
         raise ParameterError(f"call_deadline = {deadline:g} s: it must be positive")
     if longest_trial is not None and longest_trial < 1:
         raise ParameterError(f"{option('longest_trial', longest_trial)}: it must be 1 at least")
+    if most_trial_steps is not None and most_trial_steps < 1:
+        given = option("most_trial_steps", most_trial_steps)
+        raise ParameterError(f"{given}: it must be 1 at least")
     outer = policy()
     found = Policy(
         outer.in_process if in_process is None else in_process,
         outer.deadline if deadline is None else deadline,
         outer.longest_trial if longest_trial is None else longest_trial,
+        outer.most_trial_steps if most_trial_steps is None else most_trial_steps,
+        outer.taken if most_trial_steps is None else Counter(),
         idle={},
     )
     token = _policy.set(found)
@@ -107,38 +125,51 @@ def foreign_fmu_policy(
 def elsewhere(function: Callable[..., T]) -> Callable[..., T]:
     """A function, of a module, that does the same in another process, under the policy of here."""
     here = policy()
-    return partial(_under, here.in_process, here.deadline, here.longest_trial, function)
+    kept = here.in_process, here.deadline, here.longest_trial, here.most_trial_steps
+    return partial(_under, *kept, function)
 
 
 def _under(
     in_process: bool,
     deadline: float,
     longest_trial: int | None,
+    most_trial_steps: int | None,
     function: Callable[..., T],
     *arguments: object,
 ) -> T:
-    with foreign_fmu_policy(in_process=in_process, deadline=deadline, longest_trial=longest_trial):
+    with foreign_fmu_policy(
+        in_process=in_process,
+        deadline=deadline,
+        longest_trial=longest_trial,
+        most_trial_steps=most_trial_steps,
+    ):
         return function(*arguments)
 
 
 @contextmanager
 def foreign_fmus_housed(
-    in_process: bool | None, deadline: float | None, longest_trial: int | None
+    in_process: bool | None,
+    deadline: float | None,
+    longest_trial: int | None,
+    most_trial_steps: int | None = None,
 ) -> Iterator[Sequence[Remark]]:
     """As `foreign_fmu_policy`, with remarks that are to be told; a context around tells its own.
 
     Args:
-        in_process, deadline, longest_trial: see `foreign_fmu_policy`.
+        in_process, deadline, longest_trial, most_trial_steps: see `foreign_fmu_policy`.
 
     Raises:
         ParameterError: the deadline is not positive, or a trial has no step.
     """
-    asked = in_process, deadline, longest_trial
-    if _policy.get() is not None and asked == (None, None, None):
+    asked = in_process, deadline, longest_trial, most_trial_steps
+    if _policy.get() is not None and asked == (None,) * 4:
         yield ()
         return
     with foreign_fmu_policy(
-        in_process=in_process, deadline=deadline, longest_trial=longest_trial
+        in_process=in_process,
+        deadline=deadline,
+        longest_trial=longest_trial,
+        most_trial_steps=most_trial_steps,
     ) as found:
         yield found.remarks
 

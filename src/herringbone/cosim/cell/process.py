@@ -14,6 +14,7 @@ from typing import Any
 
 from herringbone.core import FmuError, HerringboneError, errors
 from herringbone.core.places.paths import module_path
+from herringbone.core.wording import option
 from herringbone.cosim.cell.block import (
     ALIVE,
     CONTROL,
@@ -241,7 +242,8 @@ def _start(block: int, words: int, code: Path, folder: Path) -> "subprocess.Pope
             env={**os.environ, "PYTHONPATH": module_path()},
         )
     except OSError as error:
-        raise FmuError(f"no cell for a foreign FMU starts ({error}); use --in-process") from error
+        use = option("in_process", True)
+        raise FmuError(f"no cell for a foreign FMU starts ({error}); use {use}") from error
 
 
 def _share_cores() -> None:

@@ -36,7 +36,7 @@ class Adaptive(NamedTuple):
         moments, covered: of the signals, and times: see `step_error.update_sizes`.
         room: see `step_error.room_for`.
         memory: time over which signals are taken about a straight line [s].
-        aim, saved: see `step_choice.AIM`.
+        aim, held: see `step_choice.AIM`.
         inner: steps of the bodies.
         error: (2,) of the present step by coupling and inner steps.
         sharpness: (2,) these over their powers of ticks, of the last steps.
@@ -64,7 +64,7 @@ class Adaptive(NamedTuple):
     room: np.ndarray
     memory: float
     aim: float
-    saved: float
+    held: float
     inner: Lengthened
     error: np.ndarray
     sharpness: np.ndarray
@@ -84,7 +84,7 @@ def new_adaptive(
     last: int,
     memory: float,
     aim: float,
-    saved: float,
+    held: float,
     inner: Lengthened,
     times: np.ndarray,
     room: np.ndarray,
@@ -93,7 +93,7 @@ def new_adaptive(
 
     Args:
         nodes: the layout of passes.
-        rungs, measured, tolerance, last, memory, aim, saved, inner, times, room: see `Adaptive`.
+        rungs, measured, tolerance, last, memory, aim, held, inner, times, room: see `Adaptive`.
     """
     unknowns, groups = nodes.unknown.size, measured.members.size
     size = nodes.degree * unknowns
@@ -115,7 +115,7 @@ def new_adaptive(
         room=room,
         memory=memory,
         aim=aim,
-        saved=saved,
+        held=held,
         inner=inner,
         error=np.zeros(2),
         sharpness=np.zeros(2),

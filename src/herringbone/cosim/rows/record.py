@@ -7,6 +7,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from herringbone.core import ParameterError
+from herringbone.core.wording import option
 
 _ROWS = 1024
 _WINDOW = 4 << 20
@@ -82,8 +83,8 @@ def _check_room(rows: int, columns: int, grid: Grid) -> None:
         raise ParameterError(
             f"{rows} records of {columns} outputs, every {grid.every * grid.step:g} s, take "
             f"{needed / _GIB:.3g} GiB, but this machine has {memory / _GIB:.3g} GiB of memory, of "
-            f"which they may take {100.0 * _SHARE:g} %; use a longer record_step (--record-step) "
-            "or a shorter t_end"
+            f"which they may take {100.0 * _SHARE:g} %; use a longer "
+            f"{option('record_step')} or a shorter {option('t_end')}"
         )
 
 

@@ -1,6 +1,7 @@
 """What the trials of a slow part cost, in a line before they are made; no clock decides."""
 
-from herringbone.core.activity import lasting, tell
+from herringbone.core.process.activity import lasting, tell
+from herringbone.core.wording import option
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.memory import LONG
 
@@ -27,6 +28,6 @@ def tell_cost(lab: Laboratory, name: str) -> None:
         tell(
             f"{name} is slow, {lab.seconds:.2g} s a step: finding out what it is in a coupling "
             f"takes about {usual} steps, {lasting(usual * lab.seconds)}, and again {LONG} for each "
-            "time that inputs seem to do nothing; 'run' with --no-probe makes none, goes by what "
-            "it declares, and holds inputs whose use that leaves open"
+            f"time that inputs seem to do nothing; 'run' with {option('probe', False)} makes none, "
+            "goes by what it declares, and holds inputs whose use that leaves open"
         )

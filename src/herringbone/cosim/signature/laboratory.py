@@ -36,8 +36,11 @@ class Laboratory:
         onward: how inputs move on from the start; None: all stay. Angles that turn, and what
             speeds gain, are told relative to that motion, 0 at the start.
         content: what `make` depends on, the part's name first; empty: trials are not kept.
+        one_length: the part takes no steps but these; a longer one of a trial is made of them, and
+            others are refused.
 
     Attributes:
+        grain: the only step that it takes [s]; 0: it takes others.
         restores, repeats, why: see `FirstSteps`.
         seconds: of the quickest of the first steps [s], 0 where they are known from before; only
             for telling how long trials may take.
@@ -56,9 +59,12 @@ class Laboratory:
         start_time: float = 0.0,
         onward: Onward | None = None,
         content: Sequence[str] = (),
+        *,
+        one_length: bool = False,
     ) -> None:
         self.inputs, self.outputs, self.start = tuple(inputs), tuple(outputs), np.array(start)
         self.step, self.start_time = step, start_time
+        self.grain = step if one_length else 0.0
         self._make, self._onward = make, onward
         self.turning = onward.turning if onward else ()
         self._content, self._known = content, KnownTrials(content, self._start())
@@ -192,6 +198,10 @@ class Laboratory:
     def _step(self, trial: Trial, values: np.ndarray, h: float) -> None:
         """A step of h [s] on inputs (n,) that stay; of shorter ones where held angles turn on."""
         pieces = max(1, math.ceil(h / self._onward.longest)) if self._onward else 1
+        if self.grain:
+            pieces = round(h / self.grain)
+            if pieces < 1 or not math.isclose(pieces * self.grain, h):
+                raise Refused(f"{h:g} s are no whole number of its steps of {self.grain:g} s")
         for _ in range(pieces):
             self._give(trial, values, h / pieces)
             trial.step(h / pieces)

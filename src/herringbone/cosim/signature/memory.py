@@ -3,7 +3,8 @@
 An input is changed during one step, and what comes out is compared with the run without the change.
 Outputs that differ after the pulse has gone remember it. An output that differs only in a later
 step than the pulse's, by the same number of steps when they are half as long, has a delay of steps;
-one that differs after the same time has a delay of its own, which is a state.
+one that differs after the same time has a delay of its own, which is a state. Of a part that takes
+steps of one length only both are the same.
 """
 
 from collections.abc import Sequence
@@ -50,7 +51,7 @@ def pulses(lab: Laboratory, changes: np.ndarray) -> Pulses:
         delay[:, number] = np.where(reached, begins, -1)
         remembers = remembers or bool(seen[1:].any())
         late = reached & (begins > 0)
-        if late.any():
+        if late.any() and not lab.grain:
             steps = 2 * len(apart)
             half = _differences(lab, _only(changes, number), 0.5 * lab.step, steps) != 0.0
             of_steps = np.argmax(half, axis=0) == begins

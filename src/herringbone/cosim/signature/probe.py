@@ -15,7 +15,7 @@ from herringbone.cosim.signature.memory import Pulses, pulses
 from herringbone.cosim.signature.rates import rates_of
 from herringbone.cosim.signature.rotation import InputRule, pairs, rule_of
 from herringbone.cosim.signature.signature import Answer, Findings, Kind, Signature
-from herringbone.cosim.signature.ticks import tick_of
+from herringbone.cosim.signature.ticks import inner_tick_of, tick_of
 from herringbone.cosim.signature.trial import Refused
 
 _MOVES = {
@@ -82,11 +82,18 @@ def _by_trials(
 ) -> Signature:
     """Signature of a part that repeats and changes in every step; raises Refused."""
     pulse, changes = _heard(lab, changes)
-    feedthrough, slopes = feedthrough_of(lab, changes, tick, found)
+    grain = tick or lab.grain
+    feedthrough, slopes = feedthrough_of(lab, changes, grain, found)
+    if lab.grain:
+        _note_one_length(lab, feedthrough, found)
     _doubt(lab, feedthrough, pulse, found)
     _compare_later(lab, feedthrough, changes, found)
-    given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes))
-    valid = _valid_at_start(lab, tick)
+    inner = 0.0
+    if grain == 0.0 and np.nan_to_num(feedthrough).any():
+        inner = inner_tick_of(lab, changes, remembers=pulse.memory is Answer.YES)
+        pulse = pulse._replace(memory=Answer.YES) if inner else pulse
+    given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes), tick or inner)
+    valid = _valid_at_start(lab, grain)
     rates = rates_of(lab, variables, changes, feedthrough)
     _note_answers(lab, variables, pulse, found)
     for number, rule in enumerate(given):
@@ -103,9 +110,10 @@ def _by_trials(
         delay=pulse.delay,
         rates=rates,
         tick=tick,
+        inner_tick=inner,
         given=given,
         rate_inputs=rate,
-        speeds=inner_speeds(lab, feedthrough, given, rate),
+        speeds=() if inner else inner_speeds(lab, feedthrough, given, rate),
     )
 
 
@@ -146,15 +154,21 @@ def _signature(
 
 
 def _rules(
-    lab: Laboratory, changes: np.ndarray, feedthrough: np.ndarray, together: tuple[int, ...]
+    lab: Laboratory,
+    changes: np.ndarray,
+    feedthrough: np.ndarray,
+    together: tuple[int, ...],
+    tick: float,
 ) -> tuple[tuple[InputRule, ...], tuple[int, ...]]:
     """Which value of each input the part is given for a step, and the number of its rate or -1."""
     given, rate = [InputRule.MEAN] * len(lab.inputs), [-1] * len(lab.inputs)
+    if lab.grain:  # it takes shorter steps to tell, and only who gives several a step needs it
+        return tuple(given), tuple(rate)
     known = np.nan_to_num(feedthrough)
     for number, other in pairs(lab.inputs, together):
         if known[:, number].any():
             rate[number] = other
-            given[number] = rule_of(lab, (number, other), float(changes[other]), known)
+            given[number] = rule_of(lab, (number, other), float(changes[other]), known, tick)
     return tuple(given), tuple(rate)
 
 
@@ -166,6 +180,20 @@ def _doubt(lab: Laboratory, feedthrough: np.ndarray, pulse: Pulses, found: Findi
     moves = (pulse.delay >= 0).any() or np.ptp(lab.resting(lab.step, _RESTING), axis=0).any()
     if pulse.memory is Answer.NO and feedthrough.size and moves and not seen:
         found.note("its outputs change, but too little against their size, or with time alone")
+
+
+def _note_one_length(lab: Laboratory, feedthrough: np.ndarray, found: Findings) -> None:
+    """Lines on what steps of one length tell."""
+    found.note(
+        f"it takes steps of one length only: D is that of steps of {lab.grain:g} s, from its "
+        "answers after 1, 2, 4 and 8 of them"
+    )
+    for row, column in np.argwhere(np.isnan(feedthrough)):
+        if row not in found.bent:
+            found.note(
+                f"d({lab.outputs[row]})/d({lab.inputs[column]}) is unknown: it answers with motion "
+                "of its own that these steps do not resolve"
+            )
 
 
 def _compare_later(
@@ -227,9 +255,9 @@ def _amplitudes(lab: Laboratory, variables: Mapping[str, PartVariable]) -> np.nd
     return np.array([amplitude(variables[name], float(value)) for name, value in starts])
 
 
-def _valid_at_start(lab: Laboratory, tick: float) -> bool:
+def _valid_at_start(lab: Laboratory, grain: float) -> bool:
     """False if outputs jump in a tiny first step by more than in the one that follows it."""
-    tiny = _TINY * lab.step if tick == 0.0 else tick
+    tiny = grain or _TINY * lab.step
     try:
         path = lab.run([lab.start, lab.start], tiny)
     except Refused:

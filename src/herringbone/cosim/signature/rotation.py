@@ -20,8 +20,10 @@ from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.structure.rates import named_rate
 
 _STEPS = 8
+_HALVINGS = 3
 _BETTER = 4.0
-"""How much smaller the dependence on H must be than by the rule that needs no knowledge."""
+"""How much smaller the dependence on H must be than by both other rules, one of which needs no
+knowledge: where inner steps do not divide H all of them depend on it."""
 
 
 class InputRule(IntEnum):
@@ -49,7 +51,7 @@ def pairs(inputs: tuple[str, ...], together: tuple[int, ...]) -> list[tuple[int,
 
 
 def rule_of(
-    lab: Laboratory, pair: tuple[int, int], speed: float, feedthrough: np.ndarray
+    lab: Laboratory, pair: tuple[int, int], speed: float, feedthrough: np.ndarray, tick: float
 ) -> InputRule:
     """The rule that a part follows with an input and its rate; raises Refused.
 
@@ -58,19 +60,27 @@ def rule_of(
         pair: numbers of the input and its rate.
         speed: of the trial, added to the rate's start.
         feedthrough: (m, n) D, 0 where it is unknown.
+        tick: inner step [s], of which H, H/2 and H/4 are multiples then; 0: there is none.
     """
-    off = [_dependence(lab, pair, speed, feedthrough, rule) for rule in InputRule]
+    step = 2.0 ** (_HALVINGS - 1) * tick if tick else lab.step
+    off = [_dependence(lab, pair, speed, feedthrough, rule, step) for rule in InputRule]
     best = int(np.argmin(off))
-    return InputRule(best) if _BETTER * off[best] < off[InputRule.MEAN] else InputRule.MEAN
+    clear = _BETTER * off[best] < min(off[:best] + off[best + 1 :])
+    return InputRule(best) if clear else InputRule.MEAN
 
 
 def _dependence(
-    lab: Laboratory, pair: tuple[int, int], speed: float, feedthrough: np.ndarray, rule: InputRule
+    lab: Laboratory,
+    pair: tuple[int, int],
+    speed: float,
+    feedthrough: np.ndarray,
+    rule: InputRule,
+    step: float,
 ) -> float:
     """How much outputs at a fixed time depend on the step, by a rule."""
     ends = [
-        _end(lab, pair, speed, feedthrough, rule, lab.step / 2.0**k, _STEPS * 2**k)
-        for k in range(3)
+        _end(lab, pair, speed, feedthrough, rule, step / 2.0**k, _STEPS * 2**k)
+        for k in range(_HALVINGS)
     ]
     size = np.abs(ends).max(axis=0)
     passed = np.abs(feedthrough[:, pair[0]]) > 0.0

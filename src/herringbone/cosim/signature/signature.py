@@ -68,6 +68,8 @@ class Signature:
         restores: see `Laboratory`.
         repeats: see `Laboratory`.
         tick: time between changes of a sampled part [s]; 0: not sampled.
+        inner_tick: time between changes of the states of a part whose outputs follow its inputs at
+            once meanwhile [s], if that is at least 1/8 of the step; 0: none was seen.
         given: for each input which value the part is given for a step, see `rotation`.
         rate_inputs: for each input the number of its rate; -1 if it has none.
         speeds: for each input that is an angle, at what speed what is behind its shaft turns at the
@@ -86,6 +88,7 @@ class Signature:
     restores: bool | None = None
     repeats: bool = True
     tick: float = 0.0
+    inner_tick: float = 0.0
     given: tuple[InputRule, ...] = ()
     rate_inputs: tuple[int, ...] = ()
     speeds: tuple[float, ...] = ()

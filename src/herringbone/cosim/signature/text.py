@@ -46,8 +46,9 @@ def _off(rate: Rate) -> str:
 
 
 def _kind(signature: Signature) -> str:
-    if signature.tick and signature.kind is not Kind.SAMPLED:
-        return f"{signature.kind}, in inner steps of {signature.tick:g} s"
+    inner = signature.inner_tick or (signature.tick if signature.kind is not Kind.SAMPLED else 0.0)
+    if inner:
+        return f"{signature.kind}, in inner steps of {inner:.3g} s"
     return str(signature.kind)
 
 

@@ -7,6 +7,8 @@ import numpy as np
 
 from herringbone.core import FmuError
 from herringbone.core.part import Part
+from herringbone.core.wording import option
+from herringbone.cosim.cell.policy import Policy, policy
 from herringbone.cosim.loops.calls import (
     do_step,
     exchange_derivatives,
@@ -31,6 +33,14 @@ class Refused(FmuError):
         self.lost = lost
 
 
+class EndedError(FmuError):
+    """No further trial steps of a part are made, as those that are allowed have been."""
+
+
+NOT_TRIED = Refused, EndedError
+"""Why a trial has no outcome."""
+
+
 def check_length(steps: int, longest: int | None) -> None:
     """Check that a run has no more steps than are allowed, any if None; raises Refused."""
     if longest is not None and steps > longest:
@@ -45,6 +55,7 @@ class Trial:
         inputs, outputs: names of its real inputs and outputs.
         start_time, stop_time: of the experiment [s].
         tolerance: that the part is told [1]; None: none.
+        counted: its steps count among those that all trials of a part may have together.
 
     Raises:
         FmuError: the part does not initialise.
@@ -58,6 +69,8 @@ class Trial:
         start_time: float = 0.0,
         stop_time: float = 1.0,
         tolerance: float | None = None,
+        *,
+        counted: bool = True,
     ) -> None:
         self.part, self.time = part, start_time
         self._inputs, self._outputs = (
@@ -76,6 +89,7 @@ class Trial:
             part.close()
             raise
         self._at = part.addresses
+        self._policy = policy() if counted else Policy()
 
     def set(self, values: np.ndarray) -> None:
         """Set all inputs (n,); raises Refused."""
@@ -134,11 +148,21 @@ class Trial:
             raise self._refusal(what, status)
 
     def step(self, h: float) -> None:
-        """Step by h [s]; raises Refused."""
+        """Step by h [s]; raises Refused, EndedError."""
+        self._count()
         status = do_step(self._at.do_step, self._at.component, self.time, h)
         if status > LAST_GOOD:
             raise self._refusal(f"a step of {h:g} s", status)
         self.time += h
+
+    def _count(self) -> None:
+        most = self._policy.most_trial_steps
+        if most is not None and self._policy.taken[self.part.name] >= most:
+            raise EndedError(
+                f"{option('most_trial_steps', most)}: no more steps of {self.part.name} are taken "
+                "in trials"
+            )
+        self._policy.taken[self.part.name] += 1
 
     @property
     def can_restore(self) -> bool:

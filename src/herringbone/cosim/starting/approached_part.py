@@ -17,9 +17,9 @@ class ApproachedPart(PartAdapter):
         approach: what it is given.
     """
 
-    def __init__(self, part: Part, approach: Approach) -> None:
+    def __init__(self, part: Part, approach: Approach, *, in_trial: bool) -> None:
         super().__init__(part)
-        self._approach, self._closed = approach, False
+        self._approach, self._closed, self._in_trial = approach, False, in_trial
 
     def enter_initialization(
         self, start_time: float, stop_time: float, tolerance: float | None = None
@@ -29,7 +29,7 @@ class ApproachedPart(PartAdapter):
         begin_at(self.part, self._approach)
         early = start_time - self._approach.duration
         try:
-            trial = Trial(self.part, names, [], early, stop_time, tolerance)
+            trial = Trial(self.part, names, [], early, stop_time, tolerance, counted=self._in_trial)
         except FmuError:
             self._closed = True  # a trial closes what does not initialise
             raise
@@ -44,9 +44,11 @@ class ApproachedPart(PartAdapter):
             super().close()
 
 
-def approached(part: Part, given: Approach | None) -> Part:
-    """The part, with its approach in front of it if it is stepped before the run."""
-    return ApproachedPart(part, given) if given and given.duration else part
+def approached(part: Part, given: Approach | None, *, in_trial: bool = False) -> Part:
+    """The part, with its approach in front of it if it is stepped before the run, or a trial."""
+    if not given or not given.duration:
+        return part
+    return ApproachedPart(part, given, in_trial=in_trial)
 
 
 def begin_at(part: Part, given: Approach) -> None:

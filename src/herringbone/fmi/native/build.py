@@ -5,12 +5,12 @@ from pathlib import Path
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
-from herringbone.core.activity import activity
 from herringbone.core.caching.built import note_built
 from herringbone.core.caching.files import alone_in, is_stored, store, stored_files
 from herringbone.core.caching.keys import digest_of, kernels_key, wrapper_key
 from herringbone.core.places.paths import cache_folder
 from herringbone.core.places.temporary import temporary_folder
+from herringbone.core.process.activity import activity
 from herringbone.fmi.archive import add_to_archive
 from herringbone.fmi.native.carried import carried_fmu
 from herringbone.fmi.native.compiler import compile_library, compile_wrapper, require_compiler

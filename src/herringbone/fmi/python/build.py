@@ -7,12 +7,12 @@ from pathlib import Path
 
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import FmuError
-from herringbone.core.activity import activity
 from herringbone.core.caching.built import note_built
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import packed_key
 from herringbone.core.places.paths import cache_folder
 from herringbone.core.places.temporary import temporary_folder
+from herringbone.core.process.activity import activity
 
 
 def build_python_fmus(names: Iterable[str] | None = None) -> dict[str, Path]:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.gears.finite_elements.blocks import Resolution
 from herringbone.gears.finite_elements.compliance import (
     ToothCompliance,

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.shipped_table import GEAR_FILE
 from herringbone.gears.finite_elements.blocks import Resolution

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from threading import Thread
 
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.places.paths import PACKAGE
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.gears.finite_elements.blocks import Resolution
 from herringbone.gears.finite_elements.compliance import ToothCompliance, tooth_compliance
 from herringbone.gears.geometry.gear_pair import GearPair

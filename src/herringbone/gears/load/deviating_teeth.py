@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.job import GearJob
 from herringbone.gears.load.flank_load import contact_pressure

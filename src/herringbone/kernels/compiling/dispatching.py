@@ -12,7 +12,7 @@ from numba.core.dispatcher import _FunctionCompiler
 from numba.core.registry import CPUDispatcher
 from numba.core.typing import Signature
 
-from herringbone.core.activity import COMPILING
+from herringbone.core.process.activity import COMPILING
 from herringbone.kernels.compiling.linking import LINKED, PIECE, WHOLE, quickly
 
 

@@ -92,7 +92,7 @@ def animate_mode(found: NaturalModes, mode: int, file: str | Path) -> None:
         motion.save(str(file), writer=PillowWriter(fps=round(_FRAMES / _PERIOD_S)))
     except OSError as error:
         raise HerringboneError(
-            f"cannot write {file}: {error.strerror}; choose another folder with -o"
+            f"cannot write {file}: {error.strerror}; choose another folder"
         ) from error
 
 

@@ -22,6 +22,7 @@ _WHY = (
     "the run does not repeat itself, so that it cannot be resumed; its rows stay, begin anew with "
     "--overwrite"
 )
+"""In words of the command: scripts resume no runs."""
 
 
 class ReplayError(HerringboneError):

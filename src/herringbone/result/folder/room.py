@@ -4,6 +4,7 @@ import shutil
 from pathlib import Path
 
 from herringbone.core import ParameterError
+from herringbone.core.wording import option
 
 _GIB = 2.0**30
 _TEXT = 2.5
@@ -26,6 +27,6 @@ def check_room(folder: Path, rows: int, columns: int) -> None:
     if needed > free:
         raise ParameterError(
             f"{rows} records of {columns} outputs take {needed / _GIB:.3g} GiB as doubles and as "
-            f"text, but there are {free / _GIB:.3g} GiB free in {there}; use a longer record_step "
-            "(--record-step) or a shorter t_end"
+            f"text, but there are {free / _GIB:.3g} GiB free in {there}; use a longer "
+            f"{option('record_step')} or a shorter {option('t_end')}"
         )

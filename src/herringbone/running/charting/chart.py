@@ -62,6 +62,7 @@ def chart(
     in_process: bool | None = None,
     call_deadline: float | None = None,
     longest_trial: int | None = None,
+    most_trial_steps: int | None = None,
     progress: bool | Progress = False,
 ) -> WorkPrecision:
     """Run algorithms up a ladder of steps, against the monolithic twin.
@@ -78,7 +79,8 @@ def chart(
         values, gear, housing, replace_parts: as in `herringbone.run`.
         fmu: kind of the parts' FMUs, as in `herringbone.run`.
         fuse: curves of the fused system, too; its steps are the base steps of the core.
-        in_process, call_deadline, longest_trial: of foreign FMUs, as in `herringbone.run`.
+        in_process, call_deadline, longest_trial, most_trial_steps: of foreign FMUs, as in
+            `herringbone.run`.
         progress: True for a count of runs; or called before each with algorithm and step [s].
 
     Returns:
@@ -89,7 +91,7 @@ def chart(
     """
     check_called("progress", progress)
     with (
-        foreign_fmus_housed(in_process, call_deadline, longest_trial) as remarks,
+        foreign_fmus_housed(in_process, call_deadline, longest_trial, most_trial_steps) as remarks,
         _counted(progress) as counted,
     ):
         wishes = Wishes(

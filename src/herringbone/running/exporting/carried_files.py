@@ -6,6 +6,7 @@ from pathlib import Path
 
 from herringbone.components.registry import component
 from herringbone.core import ParameterError
+from herringbone.core.wording import option
 from herringbone.cosim.structure.system import PartSpec, System
 
 
@@ -33,5 +34,5 @@ def refuse_files(part: PartSpec) -> None:
     for name, file in carried_files(part).items():
         raise ParameterError(
             f"{part.name}.{name} = '{file}': an .ssp file must not depend on files outside it; "
-            "native FMUs carry it: leave out --python"
+            f"native FMUs carry it: leave out {option('python')}"
         )

@@ -7,6 +7,7 @@ from herringbone.analysis.stability.steps.step_limits import step_limits
 from herringbone.analysis.stability.steps.step_scan import LARGEST_STEP
 from herringbone.core import HerringboneError
 from herringbone.core.declaring.units import quantity
+from herringbone.core.wording import option
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.structure.system import System
 from herringbone.running.known_limits import KnownLimits
@@ -44,9 +45,10 @@ def parallel_step(system: System) -> float:
         ).limit
     except HerringboneError as error:
         _log.warning(
-            "communication step %s: the largest stable one is not known (%s); choose it by --step",
+            "communication step %s: the largest stable one is not known (%s); choose it by %s",
             quantity(UNKNOWN, "s"),
             error,
+            option("step"),
         )
         return UNKNOWN
     step = float(f"{SHARE * min(limit, LARGEST_STEP):.1g}")

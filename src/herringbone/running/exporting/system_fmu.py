@@ -13,6 +13,7 @@ from herringbone.core import Component, ParameterError
 from herringbone.core.declaring.hosting import Wanted
 from herringbone.core.declaring.variable import Causality
 from herringbone.core.places.files import write_whole
+from herringbone.core.wording import option
 from herringbone.cosim.ssp.write import parameter_set
 from herringbone.fmi import interface
 from herringbone.fmi.native.build import build_models
@@ -103,18 +104,18 @@ def _exported(
             "gear pair with bearings and housing, whose two flanges are the ports of the system"
         )
     inside = structure.without(*outside)
-    kept_out = " ".join(f"--outside {part}" for part in inside.foreign_parts)
+    kept_out = option("outside", list(inside.foreign_parts))
     refuse_foreign_parts(
         inside,
         "the system cannot become a single FMU",
-        f"leave it out ({kept_out}), or export an .ssp, which carries it (no --as-fmu)",
+        f"leave it out ({kept_out}), or export an .ssp, which carries it (no {option('as_fmu')})",
     )
     if wanted is not None and hosted:
         structure = structure.with_values(chosen.values)
         if held:
             raise ParameterError(
                 f"scene {chosen.name}: [model]: a gearbox made for hosts can leave out modes of "
-                f"its housing, but not {held[0]}; add --outside, or hold modes alone"
+                f"its housing, but not {held[0]}; add {option('outside')}, or hold modes alone"
             )
         composite = make_hosted(structure, wanted)
     else:

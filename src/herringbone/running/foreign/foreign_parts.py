@@ -72,7 +72,8 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
         repeats = signature.repeats and signature.restores is not False
         return (part if repeats else WithoutStates(part)), lines
     lines += _contradictions(part.variables, signature)
-    if part.addresses.set_derivatives or signature.tick or _loops_without_end(part, signature):
+    held = part.addresses.set_derivatives or signature.tick or part.one_step
+    if held or _loops_without_end(part, signature):
         part.has_states = signature.kind is not Kind.ELEMENT
         part.variables = _measured(part.variables, signature)
         if isinstance(part, FmuPart | CellPart | PartAdapter):
@@ -91,6 +92,7 @@ def can_be_watched(part: Part, signature: Signature) -> bool:
         and bool(np.isnan(signature.feedthrough).any())
         and signature.restores is True
         and signature.tick == 0.0
+        and not part.one_step
         and not part.addresses.set_derivatives
     )
 

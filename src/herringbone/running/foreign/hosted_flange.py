@@ -13,8 +13,9 @@ from herringbone.analysis.stability.surrogates.identification import LinearModel
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED, Surrogate
 from herringbone.analysis.stability.surrogates.trials import tell_cost
 from herringbone.core import FmuError, ParameterError
-from herringbone.core.activity import activity
 from herringbone.core.part import Part
+from herringbone.core.process.activity import activity
+from herringbone.core.wording import option
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Kind, Laboratory
 from herringbone.cosim.signature.rotation import InputRule
@@ -165,21 +166,22 @@ def _flange_of(part: Part, asked_for: str) -> Flange:
 def _check(flange: Flange, host: Host) -> None:
     """Check that the host fits the flange; raises ParameterError."""
     if not host.inertia > 0.0:
-        raise ParameterError(f"--inertia {host.inertia:g}: it must be positive, in kg.m2")
+        raise ParameterError(f"{option('inertia', host.inertia)}: it must be positive, in kg.m2")
     if host.stiffness < 0.0 or host.damping < 0.0:
         raise ParameterError(
-            f"--stiffness {host.stiffness:g} --damping {host.damping:g}: neither may be negative"
+            f"{option('stiffness', host.stiffness)} {option('damping', host.damping)}: neither may "
+            "be negative"
         )
     shaft = host.stiffness > 0.0 or host.damping > 0.0
     if flange.takes_torque and not shaft:
         raise ParameterError(
-            f"flange {flange.name} takes torque: give the host's shaft, --stiffness in N.m/rad and "
-            "--damping in N.m.s/rad"
+            f"flange {flange.name} takes torque: give the host's shaft, {option('stiffness')} in "
+            f"N.m/rad and {option('damping')} in N.m.s/rad"
         )
     if shaft and not flange.takes_torque:
         raise ParameterError(
-            f"flange {flange.name} takes motion and has its shaft inside: leave out --stiffness "
-            "and --damping; --inertia is at the flange"
+            f"flange {flange.name} takes motion and has its shaft inside: leave out "
+            f"{option('stiffness')} and {option('damping')}; {option('inertia')} is at the flange"
         )
 
 

@@ -7,10 +7,11 @@ from herringbone.analysis.rigid_rotation import names_of_states, rigid_rotation
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError
 from herringbone.cosim.structure.system import System
+from herringbone.running.gradual.ramp import ramp_times
+from herringbone.running.known_parts import known_parts
 from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.running.pairs.mesh_phases import steady_values
 from herringbone.running.pairs.open_flanges import loaded
-from herringbone.running.start import known_parts, ramp_times
 
 _TORQUE = 200.0
 """At pinions that only foreign parts load [N m]; limits hardly depend on it."""

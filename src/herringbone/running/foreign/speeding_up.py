@@ -17,13 +17,13 @@ from herringbone.analysis.stability.surrogates.inertia import by_acceleration
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError
-from herringbone.core.activity import tell
+from herringbone.core.process.activity import tell
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.foreign.linear_start import is_brought
+from herringbone.running.known_parts import known_parts
 from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.running.settling.own_motion import Output, own_motion
-from herringbone.running.start import known_parts
 
 Variable = tuple[str, str]
 """A part's name and a variable's."""

@@ -12,8 +12,9 @@ from herringbone.analysis.stability.surrogates.stand_in import Stranger
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 from herringbone.analysis.stability.surrogates.trials import tell_cost
 from herringbone.core import FmuError
-from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
+from herringbone.core.process.activity import activity
+from herringbone.core.wording import option
 from herringbone.cosim.adapter import WithoutStates
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.nodal import NodalPart
@@ -31,16 +32,20 @@ from herringbone.running.foreign.other_types import held, rounded
 from herringbone.running.foreign.start_inputs import known_start_inputs
 from herringbone.running.foreign.started import own_step
 from herringbone.running.foreign.trials import found_signature
+from herringbone.running.known_parts import without_parts
 from herringbone.running.loading import instances, open_parts
-from herringbone.running.start import without_parts
 
 _USUAL_STEPS = (1e-3, 1e-4, 1e-2, 1e-5, 5e-4, 2e-3, 5e-3, 2e-4, 0.1)
 """That are tried of parts that take steps of one length only [s]."""
 
-_INSTEAD = (
-    "this holds for all algorithms, with --simulate, too; 'herringbone run' with --step tells of a "
-    "step by its outcome and by its error by steps, at half and twice the step"
-)
+
+def _instead() -> str:
+    """What tells of steps that nothing is predicted of."""
+    return (
+        f"this holds for all algorithms, with {option('simulate', True)}, too; a run with "
+        f"{option('step')} tells of a step by its outcome and by its error by steps, at half and "
+        "twice the step"
+    )
 
 
 @dataclass
@@ -66,7 +71,7 @@ class Surrogates:
     def lines(self) -> list[str]:
         """Why nothing is promised, for each part for which nothing stands; then what helps."""
         found = [f"nothing is promised: {name}: {why}" for name, why in self.missing.items()]
-        return [*found, _INSTEAD] if found else []
+        return [*found, _instead()] if found else []
 
 
 @contextmanager
@@ -209,7 +214,9 @@ def _beginning(spec: PartSpec, make: Callable[[], Part], inputs: list[str]) -> _
     given = {u.name: u for u in spec.approach.inputs}
     onward = replace(spec.approach, inputs=tuple(given[name] for name in inputs)).onward
     brought = (*content, repr(spec.approach))
-    return _Beginning(lambda: approached(make(), spec.approach), onward.still, onward, brought)
+    return _Beginning(
+        lambda: approached(make(), spec.approach, in_trial=True), onward.still, onward, brought
+    )
 
 
 def _with_clock(

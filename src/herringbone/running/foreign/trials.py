@@ -6,9 +6,10 @@ from contextlib import AbstractContextManager
 import numpy as np
 
 from herringbone.core import FmuError
-from herringbone.core.activity import activity
 from herringbone.core.declaring.declaration import is_node
 from herringbone.core.part import Part
+from herringbone.core.process.activity import activity
+from herringbone.core.wording import option
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, cost, find_signature
 from herringbone.cosim.structure.system import PartSpec
@@ -16,10 +17,7 @@ from herringbone.running.content import contents_of_trials
 from herringbone.running.foreign.known_signatures import known_signature
 from herringbone.running.foreign.start_inputs import known_start_inputs
 
-_HERE = (
-    ", and runs in this process: no trials; in a child process (on Linux, without --in-process) "
-    "there are"
-)
+_HERE = ", and runs in this process: no trials; in a child process (on Linux, without %s) there are"
 _LEFT = "it can be instantiated once only, and one after another in a process is not as new"
 
 Instances = Callable[[PartSpec], AbstractContextManager[Callable[[], Part]]]
@@ -76,9 +74,9 @@ def signature_of(
     """
     inputs, outputs = (_reals(part, causality) for causality in ("input", "output"))
     if not has_further(part):
-        return _unknown(inputs, outputs, step, f"it can be instantiated once only{_HERE}")
-    if part.one_step:
-        return _unknown(inputs, outputs, step, "it declares that its steps cannot vary: no trials")
+        return _unknown(
+            inputs, outputs, step, f"it can be instantiated once only{_HERE % option('in_process')}"
+        )
     if not inputs and any(v.causality == "input" for v in part.variables.values()):
         return _unknown(inputs, outputs, step, "its inputs are no reals: no trials")
     return _tried(part, make, inputs, outputs, step, content)
@@ -95,7 +93,7 @@ def _tried(
     """See `signature_of`; outputs that are not finite in trials are left out of them."""
     try:
         start = known_start_inputs(make, inputs, content)
-        with Laboratory(make, inputs, outputs, start, step, content=content) as lab:
+        with _laboratory(part, make, inputs, outputs, start, step, content) as lab:
             silent = lab.not_finite
             if part.once and not lab.repeats:
                 return _unknown(inputs, outputs, step, f"{_LEFT}: {lab.why}: no trials")
@@ -103,12 +101,26 @@ def _tried(
             if not silent:
                 return find_signature(lab, part.variables)
         shown = _others(outputs, silent)
-        with Laboratory(make, inputs, shown, start, step, content=content) as lab:
+        with _laboratory(part, make, inputs, shown, start, step, content) as lab:
             found = find_signature(lab, part.variables)
     except FmuError as error:
         return _unknown(inputs, outputs, step, f"no trials: {error}")
     why = f"{', '.join(silent)}: not finite in trials, and taken to depend on nothing"
     return found.with_silent(silent, why)
+
+
+def _laboratory(
+    part: Part,
+    make: Callable[[], Part],
+    inputs: list[str],
+    outputs: list[str],
+    start: np.ndarray,
+    step: float,
+    content: Sequence[str],
+) -> Laboratory:
+    """Of a part's trials, in steps that it declares to take."""
+    kept = (*content, "steps of one length") if content and part.one_step else content
+    return Laboratory(make, inputs, outputs, start, step, content=kept, one_length=part.one_step)
 
 
 def _others(outputs: Sequence[str], silent: Collection[str]) -> list[str]:

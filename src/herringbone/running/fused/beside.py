@@ -8,9 +8,9 @@ from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import StructureError
-from herringbone.core.activity import activity
 from herringbone.core.part import Part, column
 from herringbone.core.places.part_path import PartPath, find_columns
+from herringbone.core.process.activity import activity
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import build_network

@@ -7,10 +7,10 @@ from herringbone.analysis.accuracy.apart import apart
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.measured import DEGREES, Measured, measured, suited
 from herringbone.core import ParameterError, StructureError
-from herringbone.core.activity import activity
 from herringbone.core.caching.remembered import Remembered
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.places.files import same_folder
+from herringbone.core.process.activity import activity
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.rows.stream import Streaming

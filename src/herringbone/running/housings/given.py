@@ -5,12 +5,13 @@ from pathlib import Path
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.core import ParameterError, ResourceError
-from herringbone.core.activity import activity
 from herringbone.core.caching.files import is_stored, store, stored_files
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.declaring.roles import Quantity
 from herringbone.core.places.files import is_file, is_folder
 from herringbone.core.places.paths import cache_folder
+from herringbone.core.process.activity import activity
+from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System
 from herringbone.housing import read_housing, write_housing
 from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
@@ -30,16 +31,16 @@ def split_housings(
     data: dict[str, Path] = {}
     fmus: dict[str, Path] = {}
     for part, given in housings.items():
-        file, option = Path(given), f"--housing {given}"
+        file, what = Path(given), option("housing", str(given))
         if not is_file(file) and not is_folder(file):
-            raise ResourceError(f"{option}: there is no file or folder {file}")
+            raise ResourceError(f"{what}: there is no file or folder {file}")
         if file.suffix.lower() == _FMU:
             fmus[part] = file
         elif is_folder(file) or file.suffix.lower() == _DIMENSIONS:
             data[part] = file
         else:
             raise ResourceError(
-                f"{option}: it takes a folder with {HEAD}, the dimensions of a welded housing "
+                f"{what}: it takes a folder with {HEAD}, the dimensions of a welded housing "
                 f"({_DIMENSIONS}) or an FMU ({_FMU}); 'herringbone housing import' makes the "
                 "folder of another program's modes or matrices; unpack a zip file first"
             )
@@ -59,7 +60,9 @@ def with_housing_data(system: System, data: Mapping[str, Path]) -> System:
         read_housing(folder)
         columns = {known.column(part, quantity): file for quantity, file in _FILES.items()}
         if None in columns:
-            raise ParameterError(f"--housing {given}: {part} takes no modal data; give an FMU")
+            raise ParameterError(
+                f"{option('housing', str(given))}: {part} takes no modal data; give an FMU"
+            )
         files = {str(column): str((folder / file).absolute()) for column, file in columns.items()}
         system = system.with_values(files)
     return system

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from herringbone.analysis.accuracy.error_budget import by_size
 from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
+from herringbone.core.wording import option
 from herringbone.result.budget import BudgetRow, Known
 from herringbone.result.result import Result
 from herringbone.scenes import Model, Scene
@@ -32,8 +33,8 @@ def refuse_lean(scene: Scene) -> None:
     if scene.model:
         raise ParameterError(
             f"scene {scene.name}: [model]: leaner models are of steady states, sweeps of them, and "
-            "runs with fuse, without foreign parts, and of export --as-fmu; drop [model] for the "
-            "whole one"
+            "runs with fuse, without foreign parts, and of an FMU by export, "
+            f"{option('as_fmu', True)}; drop [model] for the whole one"
         )
 
 

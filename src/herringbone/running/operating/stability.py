@@ -6,10 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.stability import limits
-from herringbone.analysis.stability.limits import Stability, default_algorithms
-from herringbone.analysis.stability.steps.step_verdict import StepVerdict, step_verdicts
+from herringbone.analysis.stability.limits import Stability
+from herringbone.analysis.stability.steps.step_verdict import StepVerdicts, step_verdicts
 from herringbone.analysis.stability.surrogates.operating_point import linear_at
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import Algorithm, parse_algorithm, refuse_adaptive
 from herringbone.cosim.cell.policy import foreign_fmus_housed
 from herringbone.cosim.structure.system import System
@@ -43,8 +43,9 @@ def stability(
     in_process: bool | None = None,
     call_deadline: float | None = None,
     longest_trial: int | None = None,
+    most_trial_steps: int | None = None,
     progress: Progress = lambda algorithm: None,
-) -> Stability | tuple[StepVerdict, ...]:
+) -> Stability | StepVerdicts:
     """Stable steps of coupling algorithms, bonds, and a recommended algorithm and step.
 
     They are predicted from the linear parts at the start of the scene; see `docs/coupling.md`.
@@ -58,12 +59,13 @@ def stability(
         tolerance: relative error for which a step is recommended.
         simulate: also find the non-linear system's limits, by runs.
         values, gear, housing, replace_parts: as in `herringbone.run`.
-        in_process, call_deadline, longest_trial: of foreign FMUs, as in `herringbone.run`.
+        in_process, call_deadline, longest_trial, most_trial_steps: of foreign FMUs, as in
+            `herringbone.run`.
         progress: see `Progress`.
 
     Returns:
-        What is known, which `str` tells as the command does; with `step` a verdict of each
-        algorithm, with `stable`, `growth` and `lines()`.
+        What is known, or with `step` a verdict of each algorithm, with `stable`, `growth` and
+        `lines()`; `str` tells either as the command does.
 
     Raises:
         HerringboneError: something about the input is wrong, or nothing can be predicted.
@@ -76,13 +78,12 @@ def stability(
     told: list[str] = []
     with (
         one_blas_thread(),
-        foreign_fmus_housed(in_process, call_deadline, longest_trial) as remarks,
+        foreign_fmus_housed(in_process, call_deadline, longest_trial, most_trial_steps) as remarks,
         known_before(system, scene, speed, torque, wishes, told.append) as found,
     ):
         if step is not None:
-            return step_verdicts(
-                found.system, chosen or default_algorithms(), step, progress, found.strangers
-            )
+            verdicts = verdicts_before(found, chosen, step, progress)
+            return StepVerdicts(verdicts, (*told, *verdicts.notes, *map(str, remarks)))
         known = stability_before(found, chosen, tolerance, simulate, progress)
         return replace(known, notes=(*told, *known.notes, *map(str, remarks)))
 
@@ -139,3 +140,11 @@ def stability_before(
         remember=of.known,
     )
     return replace(found, notes=(*of.missing, *linear_at(of.strangers), *found.notes))
+
+
+def verdicts_before(
+    of: Predictable, algorithms: Sequence[Algorithm], step: float, progress: Progress
+) -> StepVerdicts:
+    """What happens to a predictable system at one step [s]; arguments as of `stability`."""
+    found = step_verdicts(of.system, algorithms, step, progress, of.strangers)
+    return StepVerdicts(found, (*found.notes, *linear_at(of.strangers)))

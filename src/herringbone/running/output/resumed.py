@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.core import HerringboneError, OutcomeKind, ResourceError
+from herringbone.core.wording import option
 from herringbone.result.folder.checked_store import CheckedStore
 from herringbone.result.folder.load import load
 from herringbone.result.folder.names import State
@@ -43,7 +44,7 @@ class Resumed:
         if names := [name for name, digest in settings.items() if known.get(name) != digest]:
             raise HerringboneError(
                 f"{self.folder} cannot be resumed: its {', '.join(names)} are not what they were; "
-                "bring them back, or begin anew with --overwrite"
+                f"bring them back, or begin anew with {option('overwrite', True)}"
             )
 
     def store(

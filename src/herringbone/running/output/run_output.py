@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import HerringboneError
+from herringbone.core.wording import option
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.structure.system import System
 from herringbone.result.folder.checked_store import ReplayError
@@ -81,7 +82,7 @@ class RunOutput:
         if self.shown != wanted:
             self.notes.append(
                 f"results go to {self.shown}: {wanted} holds a run of other settings, or of an "
-                "older version; --overwrite overwrites it"
+                f"older version; {option('overwrite', True)} overwrites it"
             )
         self._run = RunFile(
             State.RUNNING, (), {}, key=key, settings=settings, asked=self.asked,
@@ -147,9 +148,8 @@ class RunOutput:
                 store, result, self.shown, parquet=self.parquet, pictures=self.pictures
             ).files
         except HerringboneError as error:
-            raise HerringboneError(
-                f"{error}; all records are in {self.shown}, and --resume writes the rest"
-            ) from error
+            rest = ", and --resume writes the rest" if self.asked else ""
+            raise HerringboneError(f"{error}; all records are in {self.shown}{rest}") from error
         finally:
             store.close()
         self._run = store.run
@@ -185,7 +185,7 @@ class RunOutput:
             if store is None or not store.rows or isinstance(error, ReplayError):
                 raise
             last = float(store.table.last(1).iloc[0, 0])
+            go_on = ", and --resume goes on from there" if self.asked else ""
             raise HerringboneError(
-                f"{error}; {store.rows} records up to {last:.6g} s are in {self.shown}, and "
-                "--resume goes on from there"
+                f"{error}; {store.rows} records up to {last:.6g} s are in {self.shown}{go_on}"
             ) from error

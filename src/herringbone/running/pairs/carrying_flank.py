@@ -13,6 +13,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
+from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.pairs.mesh_phases import steady_values
 
@@ -65,7 +66,7 @@ def _coasting(system: System, gears: list[str], steady: Callable[[System], Value
         if not coasts(system.with_values(found), gear):
             raise EquilibriumError(
                 f"no steady rotation of '{system.name}' was found on one flank of {gear}; look at "
-                "its torques, or start with --start rest"
+                f"its torques, or start with {option('start', 'rest')}"
             )
     return found
 

@@ -12,6 +12,7 @@ from herringbone.core import ParameterError
 from herringbone.core.anatomy import Anatomy
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.core.places.part_path import PartPath
+from herringbone.core.wording import option
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.files.read_job import is_rexs, read_mounted_job
@@ -39,10 +40,10 @@ def with_gears(
     notes: list[str] = []
     jobs: dict[str, GearJob] = {}
     for name, gear in gears.items():
-        option = f"--gear {gear}" if isinstance(gear, str | Path) else "gear"
+        what = option("gear", str(gear) if isinstance(gear, str | Path) else None)
         part = system.part(name).name
         if system.part(part).foreign:
-            raise ParameterError(f"{option}: {part} is a foreign FMU; nothing of a pair can be set")
+            raise ParameterError(f"{what}: {part} is a foreign FMU; nothing of a pair can be set")
         job = gear if isinstance(gear, GearJob) else read_mounted_job(Path(gear))
         jobs[part] = job
         if not isinstance(gear, GearJob) and is_rexs(Path(gear)):
@@ -50,7 +51,7 @@ def with_gears(
                 f"{gear}: a REXS stage has one face width, {1e3 * job.pair.face_width:.4g} mm; it "
                 "is taken as that of each half of a double-helical pair"
             )
-        values, said = _values(system, part, job, option)
+        values, said = _values(system, part, job, what)
         system, kept = _fitted(system, values)
         notes += (*said, *kept)
     return system, jobs, tuple(notes)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from herringbone.core.activity import activity
+from herringbone.core.process.activity import activity
 
 if TYPE_CHECKING:
     from tqdm import tqdm

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.figures.standstill import has_pictures
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.core.run_table import TableColumns
 from herringbone.result.folder.names import (
     FORMAT,

@@ -13,6 +13,7 @@ from herringbone.analysis.figures.channels import moments
 from herringbone.analysis.figures.operating_point import has_figures
 from herringbone.analysis.unanswered import unanswered
 from herringbone.core.energy_report import EnergyReport
+from herringbone.core.wording import option
 from herringbone.result.result import Result
 from herringbone.result.run_info import RunInfo
 from herringbone.running.reporting.figure_lines import WIDTH, figure_sections, labelled
@@ -47,7 +48,7 @@ def _why_none(result: Result) -> str:
         return "the run left nothing that can be evaluated"
     return (
         f"{rows}, as one every {_time(step)} was asked for "
-        f"and the run takes {_time(reached)}; use a shorter --record-step"
+        f"and the run takes {_time(reached)}; use a shorter {option('record_step')}"
     )
 
 

@@ -58,7 +58,8 @@ class InnerSteps(NamedTuple):
     Attributes:
         system: with them.
         stepping: the longest of gear pairs, or of all parts where there is none; gear pairs may
-            take longer ones while the run goes on, up to what is stable, where teeth do not part.
+            take longer ones while the run goes on, up to what is stable, where teeth do not part
+            and no velocities of gears are recorded.
         degree: of the forces' polynomials.
         lines: what they are, and why where that is not the tolerance.
     """
@@ -143,7 +144,8 @@ def _chosen(
         own = "as it swings by itself" if follows < 1.0 else "the longest that is stable"
         reason = why if step == wanted else own
         said.append(f"{path} {1e6 * step:.3g} us" + f" ({reason})" * bool(reason))
-    found_steps = _Chosen(chosen, {} if part else stable, degree, ())
+    kept = part or _gears_are_recorded(system)
+    found_steps = _Chosen(chosen, {} if kept else stable, degree, ())
     _, times = _longer(system, found_steps)
     more = f"; those of gear pairs up to {times:.3g} times longer where they err little"
     line = f"inner steps: {', '.join(said)}" + more * (times > 1.0)

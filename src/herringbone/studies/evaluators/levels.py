@@ -6,13 +6,18 @@ largest distance of any channel from its mean. The amplitude of a mesh order, a 
 mean square over the channels, so that half the sum of all squares is the square of the rms.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from herringbone.analysis.accuracy.apart import groups_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.figures.radiated_power import RADIATED
 from herringbone.analysis.figures.spectra import amplitudes_at_multiples
+from herringbone.analysis.steady.of_runs.settled import SettledState
+from herringbone.analysis.steady.sound import radiated_powers
+from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import ParameterError
 from herringbone.result.result import TIME, Result
 from herringbone.studies.evaluators.evaluator import Figure
@@ -54,7 +59,18 @@ def levels_over_time(result: Result, columns: Sequence[str]) -> dict[str, Figure
         figures |= prefixed(name, moments(values), unit)
         sizes = order_amplitudes(time, values, frequency)
         figures |= order_figures(name, np.arange(1.0, sizes.size + 1.0), sizes, unit)
-    return figures
+    return figures | radiated_levels(result)
+
+
+def radiated_levels(of: Result | SteadyState | SettledState) -> dict[str, Figure]:
+    """Sound power levels of housings; with the part in the name if there are several."""
+    powers = radiated_powers(of)
+    return {
+        RADIATED if len(powers) == 1 else f"{RADIATED}.{part}": Figure(
+            power.level_db if power.total > 0.0 else math.nan, "dB"
+        )
+        for part, power in powers.items()
+    }
 
 
 def _groups(result: Result) -> Mapping[str, Sequence[str]]:

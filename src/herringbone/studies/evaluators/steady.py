@@ -1,14 +1,12 @@
 """Points by periodic steady states: each from its neighbour, without any run."""
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.figures.radiated_power import RADIATED
 from herringbone.analysis.figures.sensitivity import SENSITIVITY
 from herringbone.analysis.set_points import SPEED, TORQUE, set_point
 from herringbone.analysis.steady.of_runs.settled import SettledState
@@ -17,7 +15,6 @@ from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed
 from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point as SteadyPoint
 from herringbone.analysis.steady.solver import AUTO, TOLERANCE, SteadySolver
-from herringbone.analysis.steady.sound import radiated_powers
 from herringbone.analysis.steady.state import BALANCE, SteadyState
 from herringbone.core import ParameterError
 from herringbone.running.loading import load_scene, load_system
@@ -28,6 +25,7 @@ from herringbone.studies.evaluators.levels import (
     PERIOD,
     order_figures,
     prefixed,
+    radiated_levels,
 )
 from herringbone.studies.study import Point
 
@@ -176,21 +174,10 @@ def figures_of(state: SteadyState | SettledState, columns: Sequence[str]) -> dic
         orders = state.mesh_orders[1:]
         kept = slice(None) if known else slice(0)
         figures |= order_figures(name, orders[kept], size[kept], unit)
-    figures |= _powers(state)
+    figures |= radiated_levels(state)
     figures[PERIOD] = Figure(float(state.meshes) if known else np.nan, "1")
     figures["error"] = Figure(state.error, "1")
     return figures
-
-
-def _powers(state: SteadyState | SettledState) -> dict[str, Figure]:
-    """Sound power levels of housings; with the part in the name if there are several."""
-    powers = radiated_powers(state)
-    return {
-        RADIATED if len(powers) == 1 else f"{RADIATED}.{part}": Figure(
-            power.level_db if power.total > 0.0 else math.nan, "dB"
-        )
-        for part, power in powers.items()
-    }
 
 
 def _is_given(found: Any) -> bool:  # noqa: ANN401

@@ -11,7 +11,7 @@ from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.core import ParameterError
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.studies.planning.rung import Worst, worst
 
 FINER = 20.0

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.leaner.question import apart, lines_of
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.rung import FUSED, Rung, worst
 

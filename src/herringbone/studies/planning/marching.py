@@ -8,7 +8,7 @@ import numpy as np
 
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.course import Course
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 
 
 class Marched(NamedTuple):

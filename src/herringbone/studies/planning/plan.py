@@ -12,8 +12,8 @@ from herringbone.analysis.twin.fused.core import Core
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core import ParameterError
 from herringbone.core.facts import Facts
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.places.files import as_texts
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.at_point import prepared_at

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import HerringboneError
-from herringbone.core.freed_memory import keep_freed_memory
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.freed_memory import keep_freed_memory
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.result.result import Result
 from herringbone.studies.evaluators.evaluator import (
     Base,

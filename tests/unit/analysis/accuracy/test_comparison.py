@@ -109,6 +109,16 @@ def test_what_the_user_set_comes_before_what_follows(second):
     assert "modal_housing.start" not in text
 
 
+def test_inner_steps_that_a_fused_run_does_not_take_are_left_out(second):
+    sides = []
+    for core in (None, {"degree": 3}):
+        names = ("micro_step", "backlash")
+        changed = {f"gearbox.gear_mesh.{name}": 1.0 + bool(core) for name in names}
+        values = {**second.info.parameters, **changed}
+        sides.append(replace(second, info=replace(second.info, core=core, parameters=values)))
+    assert list(hb.compare(*sides).parameters["parameter"]) == ["gearbox.gear_mesh.backlash"]
+
+
 def test_standstill_has_no_differences(first, second):
     """Nothing in the second run alternates but rounding: nothing can be over that."""
     still = replace(second, data=second.data.assign(**dict.fromkeys(second.signals, 1e-17)))

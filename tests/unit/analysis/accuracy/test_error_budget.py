@@ -153,9 +153,9 @@ def test_coupling_by_its_rule(table):
         coupling_row(result_with(table, slow={"gear_mesh": 2}), bond),
     ):
         assert unknown.value is None
-        assert "--reference measures" in unknown.how
+        assert "reference=True measures" in unknown.how
     strange = coupling_row(result_with(table, model={"gear_mesh": "/some/file.fmu"}), 0.0)
-    assert "--verify measures" in strange.how  # a foreign FMU has no twin
+    assert "verify=True measures" in strange.how  # a foreign FMU has no twin
 
 
 def test_coupling_that_adapts_is_as_good_as_its_steps_tell(table):

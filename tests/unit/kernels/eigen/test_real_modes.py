@@ -45,6 +45,25 @@ def test_columns_are_invariant(n, spread):
     assert back @ matrix @ shapes == pytest.approx(blocks(real, imag), abs=rounding * size)
 
 
+@pytest.mark.parametrize("decades", [4, 6])
+def test_small_rows_keep_their_digits(decades):
+    """Static deflections by the modes of a matrix whose rows and columns have sizes in any order.
+
+    To rounding, n eps times the condition of what is left without the sizes, and of the columns;
+    unsorted, it is 1e-9 and 1e-5.
+    """
+    n, chance = 20, np.random.default_rng(0)
+    size = 10.0 ** chance.uniform(-decades, 0.0, n)
+    alike = np.eye(n) + 0.3 / np.sqrt(n) * chance.normal(size=(n, n))
+    force = chance.normal(size=n)
+    real, imag, shapes, back = found(size[:, None] * alike * size)
+    deflections = shapes @ np.linalg.solve(blocks(real, imag), back @ (size * force))
+    expected = np.linalg.solve(alike, force) / size
+    rounding = 50.0 * n * np.finfo(float).eps * np.linalg.cond(alike) * np.linalg.cond(shapes)
+    assert rounding < 1e-11
+    assert deflections == pytest.approx(expected, rel=rounding)
+
+
 def test_known_eigenvalues():
     """Of a chain of n masses: w_k = 2 sin(k pi / (2 n + 2)), damped by zeta w / 2; a free mass."""
     n, damping = 12, 0.01

@@ -37,7 +37,7 @@ def test_a_system_as_one_fmu(rig, monkeypatch, tmp_path):
     monkeypatch.setattr(system_fmu, "ready_leaner", lambda *_: (both, Scene("own"), ()))
     said = (
         rf"{UNKNOWN}the system cannot become a single FMU; leave it out "
-        r"\(--outside gearbox\.modal_housing\), or export an \.ssp"
+        r'\(outside=\["gearbox\.modal_housing"\]\), or export an \.ssp'
     )
     with pytest.raises(StructureError, match=said):
         system_fmu.export_fmu("test_rig", tmp_path / "rig.fmu", outside=["drive_motor"])

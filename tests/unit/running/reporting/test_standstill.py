@@ -93,7 +93,7 @@ def test_the_note_tells_what_to_set(still):
     ("system", "said"),
     [
         ("back_to_back", "rest: give --speed R/MIN (sets drive_motor.speed_setpoint)"),
-        ("ship", "declares a speed set point; vary what drives and loads it with --set, such as"),
+        ("ship", "declares a speed set point; vary what drives and loads it with --set diesel."),
         ("on_ground", "has the set points pinion_torque.speed_setpoint, wheel_torque.speed"),
     ],
 )

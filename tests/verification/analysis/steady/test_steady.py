@@ -1,6 +1,7 @@
 """Steady states by harmonic balance against the fused core that marches on from them."""
 
 import math
+import pickle
 from itertools import pairwise
 
 import numpy as np
@@ -15,6 +16,7 @@ from herringbone.analysis.steady.marching.marched import Following, start_of
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.fused.core import Steps
+from herringbone.components.law_addresses import law_address, signals_address
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 
@@ -223,3 +225,15 @@ def test_along_a_line_a_neighbour_takes_fewer_iterations(solver):
     near = solver.solve(points[1], solver.solve(points[0])).neighbour
     one, other = (solver.solve(points[2], n) for n in (near, near._replace(before=None)))
     assert one.orbit.iterations < other.orbit.iterations
+
+
+def test_a_pickled_state_holds_nothing_of_this_process():
+    """Elsewhere addresses of compiled laws point nowhere; `multipliers` ended the process there."""
+    state = hb.steady("gearbox", tolerance=1e-2)
+    known = state.harmonics(state.columns).coefficients
+    sent = pickle.dumps(state)
+    for address in (law_address("gear_mesh"), signals_address("bearing_supports")):
+        assert address.to_bytes(8, "little") not in sent
+    again = pickle.loads(sent)
+    assert again.multipliers.largest == state.multipliers.largest
+    assert np.array_equal(again.harmonics(state.columns).coefficients, known)

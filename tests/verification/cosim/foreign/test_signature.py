@@ -30,8 +30,6 @@ MAY_BE_UNKNOWN = {
     "dog_clutch": "it is not linear there",
     "single_flywheel": "it can be instantiated once only, and runs in this process: no trials",
     "c_single_flywheel": "it can be instantiated once only, and runs in this process: no trials",
-    "press_ram": "its steps cannot vary: no trials",
-    "c_press_ram": "its steps cannot vary: no trials",
 }
 """FMUs whose nature trials cannot find, and why."""
 
@@ -201,3 +199,57 @@ def test_a_steep_law_is_no_jump():
     assert it.kind is Kind.UNKNOWN
     (note,) = it.notes
     assert "lies between" in note and "jumps" not in note
+
+
+class ClockedRotor(CallbackPart):
+    """A rotor behind a shaft, in inner steps on a held angle; its torque follows at once."""
+
+    CLOCK, STIFFNESS, DAMPING, INERTIA = 1e-4, 2800.0, 3.0, 0.33
+
+    def __init__(self):
+        names = ["p.phi", "p.w"], ["p.tau"]
+        super().__init__("rotor", *names, nodes=False, start={"p.w": 5.0})
+        self.memory += [0.0, 5.0, 0.0]  # angle, speed, number of inner steps
+
+    def step(self, t, h):
+        angle, speed, done = self.memory[-3:]
+        for _ in range(int((t + h) / self.CLOCK + 1e-6) - int(done)):
+            speed += self.CLOCK * self.shaft(angle, speed) / self.INERTIA
+            angle += self.CLOCK * speed
+            done += 1
+        self.memory[-3:] = [angle, speed, done]
+        self["p.tau"] = -self.shaft(angle, speed)
+        return OK
+
+    def shaft(self, angle, speed):
+        return self.STIFFNESS * (self["p.phi"] - angle) + self.DAMPING * (self["p.w"] - speed)
+
+
+@pytest.mark.parametrize("step", [2e-5, 5e-5, 1e-4, 2e-4, 5e-4])
+def test_states_on_a_clock_behind_a_torque_that_follows_at_once(step):
+    """No element, though nothing is remembered from tick to tick; it holds its angle."""
+    it = signature_of(ClockedRotor(), ClockedRotor, step)
+    assert (it.kind, it.memory, it.tick) == (Kind.STATES_AND_FEEDTHROUGH, Answer.YES, 0.0)
+    assert it.inner_tick == pytest.approx(ClockedRotor.CLOCK, rel=3e-3)  # 5e-4/16 does not divide
+    assert it.feedthrough[0] == pytest.approx([-2800.0, -3.0], rel=2e-3)
+    assert it.given == (InputRule.MEAN, InputRule.MEAN)
+
+
+class Line(CallbackPart):
+    """What was given a time ago."""
+
+    def __init__(self):
+        super().__init__("line", ["in"], ["out"], nodes=False)
+        self.memory += [0.0] * 1024
+
+    def step(self, t, h):
+        late = min(round(1.58e-3 / h), 1023)
+        self.memory[-late - 1 :] = [*self.memory[-late:], self["in"]]
+        self["out"] = self.memory[-late - 1]
+        return OK
+
+
+def test_what_comes_late_has_no_inner_steps():
+    """Its output rests at first, and changes in each step then."""
+    it = signature_of(Line(), Line, 1e-4)
+    assert (it.kind, it.tick, it.inner_tick) == (Kind.BODY, 0.0, 0.0)

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support.foreign.c_flange import c_flange
 from support.foreign.kinds import build_kinds
 from support.foreign.strangers import write_system
 from support.parts.fakes import FakePart
@@ -22,6 +23,7 @@ from herringbone.analysis.stability.surrogates.operating_point import (
 from herringbone.analysis.unanswered import unanswered
 from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.algorithms import LI
+from herringbone.cosim.structure.system_file import read_system
 from herringbone.running.foreign.linear_start import turned_back, under_load
 from herringbone.running.foreign.surrogates import opened_surrogates
 from herringbone.running.prepared import Wishes, prepared
@@ -193,3 +195,21 @@ def test_torque_of_foreign_parts_at_the_flanges(kinds):
     assert pair["torque_Nm"]["pinion"] == moments(run, "motor.flange.tau").mean > 0.0
     assert pair["torque_Nm"]["wheel"] == -moments(run, "brake.flange.tau").mean > 0.0
     assert not any("torque" in names for names in unanswered(run).values())
+
+
+@pytest.mark.parametrize(("speed", "declared"), [(100.0, 0.0), (100.0, 98.0), (0.0, 0.0)])
+def test_a_step_that_is_stable_by_models_of_another_speed(tmp_path, speed, declared):
+    """Of a motor that is not brought to the start: a line, unless both speeds are alike."""
+    fmu = c_flange(tmp_path, "SHAFT", "NONE", f"START={declared}")
+    system = write_system(tmp_path, "turning", [["motor.flange", "rotor.flange_a"]], {"motor": fmu})
+    with (system / "system.toml").open("a", encoding="utf-8") as opened:
+        opened.write(
+            f'\nrotor = {{ component = "rotating_inertia", set = {{ speed = {speed} }} }}\n'
+        )
+    found = read_system(system)
+    with opened_surrogates(found, STEP) as surrogates:
+        line = warn_if_unstable(found, LI(), STEP, strangers=surrogates.strangers)
+    if declared == 0.0 and speed:
+        assert line and "motor.flange.w at 0 and not 100 rad/s" in line
+    else:
+        assert line is None

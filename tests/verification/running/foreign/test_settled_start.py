@@ -14,8 +14,8 @@ from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.running.foreign.linear_start import turned_back, under_load
 from herringbone.running.foreign.surrogates import opened_surrogates
+from herringbone.running.known_parts import known_parts
 from herringbone.running.prepared import Wishes, prepared
-from herringbone.running.start import known_parts
 from herringbone.scenes import Start
 
 STEP = 4e-5

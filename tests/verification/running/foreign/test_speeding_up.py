@@ -14,8 +14,8 @@ from herringbone.cosim.signature.rotation import InputRule
 from herringbone.running.foreign.linear_start import under_load
 from herringbone.running.foreign.speeding_up import speeding_up
 from herringbone.running.foreign.surrogates import opened_surrogates
+from herringbone.running.known_parts import known_parts
 from herringbone.running.prepared import Wishes, prepared
-from herringbone.running.start import known_parts
 
 MOTOR = 0.12
 """Inertia of the rotor of `tests/fmus/kinds/rotation/c_e_drive.c` [kg m2]."""

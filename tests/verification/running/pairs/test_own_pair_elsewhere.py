@@ -103,7 +103,7 @@ def test_two_pairs(two, file, tmp_path):
 def test_ssp_files_take_no_pair(file, tmp_path):
     exported = tmp_path / "box.ssp"
     export_ssp("gearbox", exported)
-    with pytest.raises(ParameterError, match="sets all values by name; --gear and --housing are"):
+    with pytest.raises(ParameterError, match="sets all values by name; gear and housing are"):
         hb.run(exported, gear=file, **RUN)
 
 

@@ -12,6 +12,7 @@ from herringbone.analysis.asked import resource_file
 from herringbone.analysis.figures.modal_response import housing_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.core.declaring.roles import GEARS, PortKind, Quantity, Role
+from herringbone.core.wording import option
 from herringbone.housing import ModalHousing
 from herringbone.housing.files.plausibility import implausible
 from herringbone.result.result import Result
@@ -49,7 +50,7 @@ def _of_files(result: Result, part: str) -> Iterator[str]:
     if len({file.parent for file in files if file}) > 1:
         yield (
             f"{part} has its modes of {files[0]} and its shapes of {files[1]}: of two housings; "
-            "--housing takes the folder of one"
+            f"{option('housing')} takes the folder of one"
         )
 
 

@@ -17,6 +17,7 @@ from herringbone.analysis.figures.modal_response import housing_of, modal_veloci
 from herringbone.components.registry import component_for
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Role
+from herringbone.core.wording import option
 from herringbone.kernels.sampling import ANTI_ALIAS_CORNER, ANTI_ALIAS_ORDER, converted
 from herringbone.result.result import TIME, Result
 
@@ -127,7 +128,7 @@ class VelocitySensor:
         if 1.0 / step < needed * (1.0 - _WHOLE):
             raise ParameterError(
                 f"records every {step:g} s are too coarse for the sensor; it takes "
-                f"{1.0 / needed:g} s or less (--record-step)"
+                f"{1.0 / needed:g} s or less ({option('record_step')})"
             )
 
     def _every(self, step: float) -> int:

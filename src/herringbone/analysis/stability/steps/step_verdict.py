@@ -1,13 +1,16 @@
 """What happens at one macro step: stable or not with each algorithm, and why not."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.stability.growth import GROWTH
+from herringbone.analysis.stability.limits import default_algorithms
 from herringbone.analysis.stability.linear_parts import (
     NO_STRANGERS,
+    Member,
     MeshStiffness,
     Strangers,
     linear_network,
@@ -15,8 +18,10 @@ from herringbone.analysis.stability.linear_parts import (
 from herringbone.analysis.stability.steps.clock_grid import clocks_of
 from herringbone.analysis.stability.steps.step_limits import Progress
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
+from herringbone.core import ParameterError
 from herringbone.core.energy_report import Diagnosis, hertz
 from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System
 
 
@@ -66,40 +71,76 @@ class StepVerdict:
         ]
 
 
+class StepVerdicts(tuple[StepVerdict, ...]):
+    """A verdict of each algorithm at one macro step; `str` tells them, and the notes.
+
+    Attributes:
+        notes: algorithms that this system cannot have, and on how the verdicts came about.
+    """
+
+    notes: tuple[str, ...]
+
+    def __new__(cls, verdicts: Iterable[StepVerdict], notes: Iterable[str] = ()) -> Self:
+        """Verdicts, with notes."""
+        found = super().__new__(cls, verdicts)
+        found.notes = tuple(notes)
+        return found
+
+    def __str__(self) -> str:
+        return "\n".join([*(line for verdict in self for line in verdict.lines()), *self.notes])
+
+
 def step_verdicts(
     system: System,
     algorithms: Sequence[Algorithm],
     step: float,
     progress: Progress,
     strangers: Strangers = NO_STRANGERS,
-) -> tuple[StepVerdict, ...]:
+) -> StepVerdicts:
     """Verdicts of algorithms at a macro step.
 
     Args:
         system: at the start values of an equilibrium under load.
-        algorithms: to examine.
+        algorithms: to examine; if none, all that this system can have, with a note on others.
         step: macro step [s].
         progress: called before every matrix.
         strangers: what stands for foreign parts.
 
     Raises:
         StructureError: nothing stands for a foreign part.
+        ParameterError: this system cannot have an algorithm that is named.
         HerringboneError: a mesh is open at the start, or a part fails within one step.
     """
-    found = []
-    for algorithm in algorithms:
-        by_stiffness, residual = {}, 0.0
-        for stiffness in MeshStiffness:
-            progress(str(algorithm))
-            amplification = Amplification(*linear_network(system, stiffness, strangers), algorithm)
-            by_stiffness[stiffness] = amplification.growth(step)
-            residual = max(residual, amplification.residual)
-        worst = max(by_stiffness, key=lambda s: by_stiffness[s].radius)
-        growth = by_stiffness[worst].radius - 1.0
-        told = growth > GROWTH and not clocks_of(strangers)  # remedies are other steps, too
-        why = diagnose(system, algorithm, step, strangers) if told else None
-        frequency = by_stiffness[worst].frequency
-        found.append(
-            StepVerdict(str(algorithm), step, growth, worst.value, frequency, why, residual)
-        )
-    return tuple(found)
+    found, notes = [], []
+    for algorithm in algorithms or default_algorithms():
+        networks = {kind: linear_network(system, kind, strangers) for kind in MeshStiffness}
+        try:
+            found.append(_verdict(system, networks, algorithm, step, progress, strangers))
+        except ParameterError as error:
+            if algorithms:
+                raise
+            notes.append(f"{algorithm}: {error}")
+    return StepVerdicts(found, notes)
+
+
+def _verdict(
+    system: System,
+    networks: Mapping[MeshStiffness, tuple[Network, list[Member]]],
+    algorithm: Algorithm,
+    step: float,
+    progress: Progress,
+    strangers: Strangers,
+) -> StepVerdict:
+    """Of one algorithm; arguments as of `step_verdicts`."""
+    by_stiffness, residual = {}, 0.0
+    for stiffness, network in networks.items():
+        progress(str(algorithm))
+        amplification = Amplification(*network, algorithm)
+        by_stiffness[stiffness] = amplification.growth(step)
+        residual = max(residual, amplification.residual)
+    worst = max(by_stiffness, key=lambda s: by_stiffness[s].radius)
+    growth = by_stiffness[worst].radius - 1.0
+    told = growth > GROWTH and not clocks_of(strangers)  # remedies are other steps, too
+    why = diagnose(system, algorithm, step, strangers) if told else None
+    frequency = by_stiffness[worst].frequency
+    return StepVerdict(str(algorithm), step, growth, worst.value, frequency, why, residual)

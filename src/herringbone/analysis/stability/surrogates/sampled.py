@@ -16,7 +16,7 @@ from herringbone.analysis.stability.surrogates.identification import (
     realised,
 )
 from herringbone.core import HerringboneError
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.trial import Refused
 

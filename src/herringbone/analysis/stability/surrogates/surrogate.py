@@ -21,13 +21,13 @@ from herringbone.analysis.stability.surrogates.identification import (
 )
 from herringbone.analysis.stability.surrogates.trials import MOST_LENGTHS, Trials
 from herringbone.core.declaring.variable import NODES
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import PartVariable
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.signature import Signature
-from herringbone.cosim.signature.trial import Refused
+from herringbone.cosim.signature.trial import NOT_TRIED, Refused
 
 PROMISED = 0.01
 """Residual on trials that were not fitted, above which nothing is promised."""
@@ -151,7 +151,7 @@ class Surrogate:
         if (h, orders) not in self._residuals:
             try:
                 missed = max(self._missed_signals(h, orders), self._fit_missed)
-            except Refused:
+            except NOT_TRIED:
                 missed = np.inf
             self._residuals[h, orders] = missed
         return self._residuals[h, orders]

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from herringbone.analysis.stability.surrogates.identification import blocks
-from herringbone.core.activity import lasting, tell
+from herringbone.core.process.activity import lasting, tell
 from herringbone.cosim.signature.cost import PATIENCE
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.trial import Refused

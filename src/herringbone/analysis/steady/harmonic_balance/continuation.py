@@ -24,6 +24,7 @@ from herringbone.analysis.steady.harmonic_balance.correction import (
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.wording import option
 
 _ITERATIONS, _EASY = 12, 4
 _GROWTH, _SHRINK = 1.5, 0.5
@@ -214,6 +215,6 @@ def _at_once(period: Period, stiff: int) -> Period:
         raise ParameterError(
             f"branch: a period of {period.meshes} meshes with {what} cannot be followed over "
             "folds; take fewer places of a mesh, set run-outs and deviations to 0, or follow it "
-            "from point to point (sweep --solver shooting)"
+            f"from point to point (sweep, {option('solver', 'shooting')})"
         )
     return Period(order, period.places)

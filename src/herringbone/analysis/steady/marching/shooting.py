@@ -21,7 +21,7 @@ from herringbone.analysis.steady.marching.marched import mean_turn
 from herringbone.analysis.steady.marching.period_map import Course, Ended, PeriodMap
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 
 _MOST, _HALVINGS = 12, 5
 """Rounds of Newton, and how often a step of it is halved."""

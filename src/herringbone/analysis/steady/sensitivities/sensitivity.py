@@ -29,7 +29,7 @@ from herringbone.analysis.steady.sensitivities.assumed import STEP, Changes, Mov
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure, alternating_rows
 from herringbone.core import ParameterError
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 
 
 class Sensitivity(NamedTuple):

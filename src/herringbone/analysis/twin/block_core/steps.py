@@ -63,7 +63,7 @@ _TOO_LONG = Remark(
 _OTHER_PAIR = Remark(
     "parameters are not those at export by which the condensed core knows what to look at closely, "
     "as teeth, base radii and helix of a gear pair: it may err ten times the tolerance; export "
-    "with --gear or --set, or set micro_step"
+    "it with these values, or set micro_step"
 )
 _APART = 10.0
 """Relative difference of parameters by which directions err, over the tolerance: errors are 7e-3

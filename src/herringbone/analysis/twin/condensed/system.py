@@ -15,7 +15,7 @@ from herringbone.analysis.twin.condensed.rungs import Rungs, Shape, empty_rungs
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.law_addresses import law_address, signals_address
 from herringbone.core import Instance, Laws, StructureError
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.kernels.condensed.collocation import Table
 
 _NO_ROWS = np.zeros((0, 0))

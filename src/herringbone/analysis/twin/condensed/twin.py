@@ -14,8 +14,8 @@ from herringbone.analysis.twin.condensed.modes import make_modes
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.analysis.twin.monolithic import Twin
-from herringbone.core.activity import activity
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.activity import activity
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 STEP = 5e-6

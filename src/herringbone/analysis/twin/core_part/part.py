@@ -17,7 +17,6 @@ from herringbone.analysis.twin.core_part.variables import part_variables
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import (
     Addresses,
     PartVariable,
@@ -25,6 +24,7 @@ from herringbone.core.part import (
     ValueOrArray,
     is_signal_node,
 )
+from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.rows.recording import CoreStatistics
 from herringbone.kernels.signals import STRIDE
 

@@ -9,7 +9,7 @@ from herringbone.analysis.accuracy.apart import differences
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.course import Course
 from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.process.one_thread import one_blas_thread
 
 WINDOW = 0.02
 """Time over which steps are tried [s]."""

@@ -10,10 +10,11 @@ from llvmlite import ir
 from numba.core.ccallback import CFunc
 
 from herringbone.core import FmuError
-from herringbone.core.activity import activity
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import kernels_key
 from herringbone.core.places.paths import cache_folder
+from herringbone.core.process.activity import activity
+from herringbone.core.wording import option
 from herringbone.cosim.cell.inside import serving
 from herringbone.cosim.fmu.fmi3 import calls, within
 from herringbone.cosim.fmu.fmi3.adapters import adapters
@@ -67,7 +68,8 @@ def _object_code() -> bytes:
         builder.getModulePassManager().run(whole, builder)
     needed = [f.name for f in whole.functions if f.is_declaration and not _of_llvm(f.name)]
     if needed:
-        raise FmuError(f"the code of cells needs {', '.join(needed)}; use --in-process")
+        use = option("in_process", True)
+        raise FmuError(f"the code of cells needs {', '.join(needed)}; use {use}")
     return target.emit_object(whole)
 
 

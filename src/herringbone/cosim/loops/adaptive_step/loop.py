@@ -30,6 +30,7 @@ from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
 from herringbone.cosim.loops.adaptive_step.ladder import dividing_rung, fitting_rung
 from herringbone.cosim.loops.adaptive_step.step_choice import (
     TOO_MUCH,
+    choose_inner_steps,
     continued,
     inner_steps,
     next_rung,
@@ -190,6 +191,16 @@ def _complete(
 
 
 @inlined
+def _equal(adaptive: Adaptive, wanted: int, left: int, chunk: Chunk, done: int) -> int:
+    """The rung wanted, or that of the step before: between rows steps get twice as long or stay."""
+    used = adaptive.state[USED]
+    ticks = adaptive.rungs[used]
+    if done % chunk.every == 0 or left % ticks != 0 or adaptive.state[TAKEN_BACK]:
+        return wanted
+    return used if ticks < adaptive.rungs[wanted] < 2 * ticks else wanted
+
+
+@inlined
 def _macro_step(
     layout: Layout, nodes: NodeLayout, buffers: Buffers, control: Control, adaptive: Adaptive,
     chunk: Chunk, done: int,
@@ -199,11 +210,12 @@ def _macro_step(
     left, wanted = adaptive.last - done, state[WANTED]
     if chunk.every > 0:
         left = min(left, chunk.every - done % chunk.every)
-        wanted = dividing_rung(adaptive.rungs, wanted, left)
+        wanted = _equal(adaptive, dividing_rung(adaptive.rungs, wanted, left), left, chunk, done)
     rung = fitting_rung(adaptive.rungs, wanted, left)
     state[USED] = rung
     if adaptive.ready[rung] <= NEEDED:
         return REFRESH, 0, -1
+    choose_inner_steps(adaptive, rung, nodes.degree, _sized(adaptive))
     before = buffers.counts[1]
     t, h = chunk.t0 + done * chunk.h, adaptive.rungs[rung] * chunk.h
     failed, error = _try(layout, nodes, buffers, control, adaptive, t, h)

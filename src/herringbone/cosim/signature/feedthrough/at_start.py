@@ -3,7 +3,12 @@
 import numpy as np
 
 from herringbone.cosim.signature.amplitudes import RATIO
-from herringbone.cosim.signature.feedthrough.response import HALVINGS, Response, extrapolated
+from herringbone.cosim.signature.feedthrough.response import (
+    HALVINGS,
+    Response,
+    extrapolated,
+    of_one_length,
+)
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.signature import Findings
 from herringbone.cosim.signature.trial import Refused
@@ -21,14 +26,21 @@ over more than twice the tiny change, as tanh(w / w_0) with a w_0 of that size, 
 
 
 def feedthrough_of(
-    lab: Laboratory, largest: np.ndarray, tick: float, found: Findings
+    lab: Laboratory, largest: np.ndarray, grain: float, found: Findings
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(m, n) D, by both amplitudes and signs; and slopes of the responses [1/s]."""
+    """(m, n) D, by both amplitudes and signs; and slopes of the responses [1/s].
+
+    Args:
+        lab: of the part.
+        largest: (n,) changes of the inputs.
+        grain: shortest step in which outputs change [s]; 0: any.
+        found: lines are added to it.
+    """
     shape = len(lab.outputs), len(lab.inputs)
     feedthrough, slopes = np.empty(shape), np.empty(shape)
     for number, name in enumerate(lab.inputs):
         changes = largest[number] * np.array([1.0, -1.0, 1.0 / RATIO, -1.0 / RATIO])
-        found_by = [_column(lab, number, float(change), tick) for change in changes]
+        found_by = [_column(lab, number, float(change), grain) for change in changes]
         by_change = np.array([response.feedthrough for response in found_by])
         slopes[:, number] = found_by[0].slope
         one = _one_number(by_change)
@@ -63,12 +75,15 @@ def _jumps(lab: Laboratory, number: int, largest: float) -> np.ndarray:
     return found
 
 
-def _column(lab: Laboratory, number: int, change: float, tick: float) -> Response:
+def _column(lab: Laboratory, number: int, change: float, grain: float) -> Response:
     """D of one input at one change; shorter steps where the step does not tell."""
-    step = lab.step if tick == 0.0 else 2.0 ** (HALVINGS - 1) * tick
-    found = extrapolated(*_responses(lab, number, change, step), step)
+    step = lab.step if grain == 0.0 else 2.0 ** (HALVINGS - 1) * grain
+    responses, floor = _responses(lab, number, change, step)
+    found = extrapolated(responses, floor, step)
+    if lab.grain:
+        return of_one_length(found, responses[-1], floor)
     for _ in range(_ROUNDS):
-        if tick or not np.isnan(found.feedthrough).any():
+        if grain or not np.isnan(found.feedthrough).any():
             break
         step /= _SHORTER
         try:

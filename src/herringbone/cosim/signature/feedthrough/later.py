@@ -2,7 +2,8 @@
 
 At the start products of inputs or states may vanish, and laws that are not linear have one slope of
 many. After some steps on moved inputs each input is changed for a last, short step of two lengths;
-what does not fall with the length passes directly.
+what does not fall with the length passes directly. Of a part that takes steps of one length only
+these are four of them and one.
 """
 
 import numpy as np
@@ -22,7 +23,8 @@ def later_feedthrough(lab: Laboratory, changes: np.ndarray) -> np.ndarray:
     """(m, n) what passes directly there, 0 where nothing does; raises Refused."""
     moved = lab.start + _MOVED * unlike(changes)
     found = np.zeros((len(lab.outputs), len(lab.inputs)))
-    lengths = [lab.step / shorter for shorter in _SHORTER]
+    shorter = _SHORTER if not lab.grain else (_SHORTER[0] / _SHORTER[1], 1.0)
+    lengths = [lab.step / share for share in shorter]
     rests = [lab.after([moved] * _LEAD, moved, h) for h in lengths]
     for number, change in enumerate(changes):
         changed = moved.copy()

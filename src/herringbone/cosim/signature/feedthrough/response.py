@@ -13,6 +13,10 @@ h/2 differ: D is unknown at this step, and shorter ones are tried. What answers 
 passes directly, as far as a coupling with this step can tell.
 r_1, by the same extrapolation of (r(h) - r(h/2)) / (h/2), tells whether a part integrates one of
 its inputs into another one.
+
+Of a part that takes steps of one length H only, h are 8 H, 4 H, 2 H, H, with the input held over
+all. Its own integration in steps of H may show its states as they are before a step or after it, so
+that D is known only as well as the extrapolated value and r(H) agree.
 """
 
 from typing import NamedTuple
@@ -26,6 +30,8 @@ SURE = 0.02
 over the largest, below which there is none."""
 NONE = 0.01
 """Share of the largest response below which what is left is no feedthrough."""
+ALIKE = 0.05
+"""Difference of D and of the response to one step, over the larger, of steps of one length."""
 _LEAST = 1e-300
 _JITTER = 1e-3
 """Responses over what rounding may hide, below which they are rounding; above, they are lost."""
@@ -65,3 +71,17 @@ def extrapolated(responses: np.ndarray, floor: np.ndarray, step: float) -> Respo
     lengths = step / 2.0 ** np.arange(1, len(responses))
     slopes = (responses[:-1] - responses[1:]) / lengths[:, None]
     return Response(np.where(known, found, np.nan), 2.0 * slopes[1] - slopes[0])
+
+
+def of_one_length(found: Response, one: np.ndarray, floor: np.ndarray) -> Response:
+    """What is known of a part that takes steps of one length only.
+
+    Args:
+        found: extrapolated from one step and more.
+        one: (m,) responses to one step.
+        floor: (m,) responses that are rounding.
+    """
+    value = found.feedthrough
+    apart = np.abs(value - one) > ALIKE * np.maximum(np.abs(value), np.abs(one))
+    known = np.where(apart & (value != 0.0), np.nan, value)
+    return found._replace(feedthrough=np.where(np.abs(one) <= floor, 0.0, known))

@@ -75,7 +75,7 @@ class Wanted:
     """
 
     def __init__(self, system: Condensed, affine: np.ndarray, columns: Sequence[str]) -> None:
-        self.columns, self._system = tuple(columns), system
+        self.columns, self._system, self._affine = tuple(columns), system, affine
         twin, first = system.twin, system.twin.layout.block_first
         wanted = [twin.index(c) for c in columns]
         rows = {place: row for row, place in enumerate(places_seen(twin))}
@@ -106,6 +106,10 @@ class Wanted:
         self._first = _integers(first[p] for p in own)
         self._targets = _integers(targets)
         self._read = _integers(wanted[k] for k in self.there)
+
+    def __reduce__(self) -> tuple[type["Wanted"], tuple[Condensed, np.ndarray, Sequence[str]]]:
+        """Made anew: addresses are those of a process."""
+        return Wanted, (self._system, self._affine, self.columns)
 
     @property
     def shown(self) -> Shown:

@@ -5,9 +5,9 @@ import time
 
 import pytest
 
-from herringbone.core import activity as module
-from herringbone.core.activity import Pieces, activity
 from herringbone.core.caching.files import keep, kept
+from herringbone.core.process import activity as module
+from herringbone.core.process.activity import Pieces, activity
 
 PATIENCE = 0.05
 

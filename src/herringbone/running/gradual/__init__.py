@@ -1,0 +1,1 @@
+"""Starts without load, which rises: where no start in equilibrium is known."""
