@@ -7,6 +7,8 @@ import numpy as np
 
 from herringbone.core.part import of_parts
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, solved_growth
+from herringbone.cosim.algorithms.divided import divide
+from herringbone.cosim.algorithms.divisions import Divisions
 from herringbone.cosim.algorithms.jacobian import (
     PREDICTION,
     CouplingError,
@@ -17,6 +19,7 @@ from herringbone.cosim.algorithms.node_signals import fmi_derivatives, node_degr
 from herringbone.cosim.algorithms.prepared import PreparedRun
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.inner_stepping import InnerStepping
+from herringbone.cosim.layouts.jumps import lay_out_jumps, without
 from herringbone.cosim.layouts.layout import Chunk, build_layout, connected_outputs
 from herringbone.cosim.layouts.nodes import (
     Buffers,
@@ -27,8 +30,10 @@ from herringbone.cosim.layouts.nodes import (
 )
 from herringbone.cosim.layouts.starts import Starts
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
+from herringbone.cosim.loops.jumps import JUMPED
 from herringbone.cosim.loops.nodes import REFRESH, grow_scale, run_iterated
 from herringbone.cosim.loops.starts import iterated_from
+from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.repeating import answers_again, explicit_note, explicit_parts
 
@@ -95,6 +100,8 @@ class PreparedNodes(PreparedRun):
             network, self.layout, degree, given, outputs, (first, bodies, elements)
         )
         self.jacobian = InterfaceJacobian(network, self.layout, self.nodes, outputs)
+        self.jumps = lay_out_jumps(network, degree if newton else 0, outputs)
+        self.divisions = Divisions()
         self._buffers: Buffers | None = None
         self._correction = np.empty((0, 0))
         self._slow = SLOW_OF_PARTS if any(map(of_parts, network.parts)) else SLOW
@@ -115,15 +122,17 @@ class PreparedNodes(PreparedRun):
         """See `PreparedRun`; sweeps without a Jacobian go on as long as they better anything."""
         if self.newton:
             self.rest = math.inf
+        self.jumps = without(self.jumps)
 
     @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
         """Downgrades; and, after a run, a residual that the corrections did not remove."""
         left = float(self._buffers.worst[0]) if self._buffers else 0.0
+        said = (*self._downgrades, *self.divisions.notes())
         if not self.newton or left <= self.rest or not math.isfinite(left):
-            return self._downgrades  # of values that are not finite the outcome tells
+            return said  # of values that are not finite the outcome tells
         return (
-            *self._downgrades,
+            *said,
             f"after {self.most} corrections the forces still differed by up to {left:.2g} of the "
             "largest: use a smaller step, or look for a part that does not repeat a step alike",
         )
@@ -193,6 +202,7 @@ class PreparedNodes(PreparedRun):
     def saved(self) -> Arrays:
         """See `PreparedRun`; handles of saved states stay those of this process."""
         found = super().saved() | arrays_of("buffers", self._buffers)
+        found |= arrays_of("jumps", self.jumps) | self.divisions.saved()
         del found["buffers.states"]
         counted = np.array([self._next_refresh, self.jacobians])
         return found | {"correction": self._correction, "counted": counted}
@@ -201,6 +211,8 @@ class PreparedNodes(PreparedRun):
         """See `PreparedRun`."""
         super().put(saved)
         put_arrays("buffers", self._buffers, saved)
+        put_arrays("jumps", self.jumps, saved)
+        self.divisions.put(saved)
         self._correction = saved["correction"].copy()
         self._next_refresh, self.jacobians = map(int, saved["counted"])
 
@@ -225,8 +237,12 @@ class PreparedNodes(PreparedRun):
                 self._buffers,
                 self._correction,
                 self._control(slow),
+                self.jumps,
                 chunk._replace(start=done, count=until - done),
             )
+            if status == JUMPED:
+                status, done, culprit = divide(self, chunk._replace(start=done, count=1))
+                status = REFRESH if status == DONE else status
             if status == REFRESH:
                 status = self._refresh(self._buffers, chunk._replace(start=done))
             if status != DONE or done >= end:
@@ -247,25 +263,36 @@ class PreparedNodes(PreparedRun):
             self._buffers,
             self._correction,
             self._control(np.inf),
+            without(self.jumps),
             chunk,
         )
 
     def _control(self, slow: float) -> Control:
         return Control(self.corrections, self.most, self.rest, slow, PREDICTION)
 
+    def measured(self, t: float, h: float, known: int) -> np.ndarray:
+        """See `InterfaceJacobian.measure`."""
+        self.jacobians += 1
+        return self.jacobian.measure(self.buffers, self.buffers.scale, t, h, known)
+
+    def look_again(self) -> None:
+        """What passes directly through foreign parts may have changed; see `NodalPart`."""
+        for part in self.network.parts:
+            if isinstance(part, NodalPart):
+                part.look_again()
+
     def _refresh(self, buffers: Buffers, chunk: Chunk) -> int:
         """Correction matrix at the present state, where the chunk starts; a status of the loop."""
         done, h = chunk.start, chunk.h
         t = chunk.t0 + done * h
         self._next_refresh = done + PATIENCE
-        self.jacobians += 1
         if not self.newton:
+            self.jacobians += 1
             self._correction = np.eye(self.nodes.degree * self.nodes.unknown.size)
             self._corrected = True
             return DONE
         try:
-            found = self.jacobian.measure(buffers, buffers.scale, t, h, done + 1)
-            self._correction = correction_matrix(found, t, h)
+            self._correction = correction_matrix(self.measured(t, h, done + 1), t, h)
         except CouplingError as error:
             self.problem = str(error)
             return COUPLING_FAILED

@@ -11,6 +11,7 @@ import numpy as np
 
 from herringbone.cosim.energy.loop import is_watched
 from herringbone.cosim.energy.nodes import watch_nodes
+from herringbone.cosim.layouts.jumps import Jumps
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
 from herringbone.cosim.loops.common import (
@@ -23,6 +24,7 @@ from herringbone.cosim.loops.common import (
     not_finite,
     record_row,
 )
+from herringbone.cosim.loops.jumps import JUMPED, jumped, learn, take_back
 from herringbone.cosim.loops.node_pass import begin, one_pass, restore
 from herringbone.cosim.loops.slow import finish_slow, trace_slow
 from herringbone.kernels.compiling.jit import inlined, kernel
@@ -120,6 +122,25 @@ def converge(
     return failed, contraction
 
 
+@inlined
+def _attempt(
+    layout: Layout, nodes: NodeLayout, buffers: Buffers, correction: np.ndarray, control: Control,
+    jumps: Jumps, known: int, t: float, h: float,
+) -> tuple[int, int, float]:  # fmt: skip
+    """Try a macro step, and take it back where outputs jump; status, who failed, contraction."""
+    contraction = 0.0
+    failed = begin(layout, nodes, buffers, control.order, known, t, h, False)
+    if failed < 0:
+        failed, contraction = converge(layout, nodes, buffers, correction, control, t, h)
+    if failed >= 0:
+        return PART_FAILED, failed, contraction
+    if jumped(jumps, nodes, buffers, control.tolerance):
+        failed = take_back(layout, nodes, buffers)
+        return (PART_FAILED if failed >= 0 else JUMPED), failed, contraction
+    learn(jumps)
+    return DONE, -1, contraction
+
+
 @kernel
 def run_iterated(
     layout: Layout,
@@ -127,6 +148,7 @@ def run_iterated(
     buffers: Buffers,
     correction: np.ndarray,
     control: Control,
+    jumps: Jumps,
     chunk: Chunk,
 ) -> tuple[int, int, int]:
     """Run macro steps; the result is that of `loops.stages.run_stages`.
@@ -134,17 +156,19 @@ def run_iterated(
     Args:
         correction: C by columns, (unknowns p) squared.
 
-    Status REFRESH ends the chunk after a macro step that is complete.
+    Status REFRESH ends the chunk after a macro step that is complete, JUMPED before one that was
+    taken back.
     """
     h = chunk.h
     for n in range(chunk.start, chunk.start + chunk.count):
-        t, row, contraction = chunk.t0 + n * h, record_row(chunk, n), 0.0
-        failed = begin(layout, nodes, buffers, control.order, n + 1, t, h, False)
-        if failed < 0:
-            failed, contraction = converge(layout, nodes, buffers, correction, control, t, h)
-        if failed >= 0:
-            return PART_FAILED, n, failed
+        t, row = chunk.t0 + n * h, record_row(chunk, n)
+        status, failed, contraction = _attempt(
+            layout, nodes, buffers, correction, control, jumps, n + 1, t, h
+        )
+        if status != DONE:
+            return status, n, failed
         finish(layout, nodes, buffers)
+        buffers.spacing[1] = buffers.spacing[0]
         buffers.spacing[0] = 1.0
         for node in range(1, nodes.degree + 1):
             trace_slow(layout.slow, layout, buffers.nodes[node], n, node, nodes.degree)

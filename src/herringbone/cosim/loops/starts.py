@@ -5,6 +5,7 @@ From start to start everything is put back but what an algorithm keeps beside pa
 
 import numpy as np
 
+from herringbone.cosim.layouts.jumps import Jumps
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
 from herringbone.cosim.layouts.starts import Starts
@@ -93,12 +94,13 @@ def iterated_from(
     buffers: Buffers,
     correction: np.ndarray,
     control: Control,
+    jumps: Jumps,
     chunk: Chunk,
 ) -> tuple[int, int, int]:
     """`run_iterated` from each start; the result is that of `stages_from`."""
     for number in range(begin, starts.array.size):
         put(starts, number)
-        status, _, culprit = run_iterated(layout, nodes, buffers, correction, control, chunk)
+        status, _, culprit = run_iterated(layout, nodes, buffers, correction, control, jumps, chunk)
         if status != DONE:
             return status, number, culprit
         take(starts, number)

@@ -121,6 +121,10 @@ class NodalPart(PartAdapter):
         """The next step is none that was taken already, though it may begin at the same time."""
         self.last_step[:] = np.nan
 
+    def look_again(self) -> None:
+        """D is measured anew before the next step, if it is watched; see `nodal.watch`."""
+        self._memory["suspected"], self._memory["resting"] = 1, 0
+
     @property
     def last_step(self) -> np.ndarray:
         """(1,) when it began [s], NaN if there is none to take again; a view of what is known."""

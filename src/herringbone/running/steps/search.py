@@ -32,8 +32,8 @@ _BLIND = 2.0
 """What the step is divided by as long as nothing is known of the error."""
 _FALLS = 0.3
 """Power below which the difference of two runs does not fall with their steps. Two such runs near
-each other tell, or three that are far apart, as those are where long steps are nearly unstable; of
-noise, whose differences rise and fall, the mean of four."""
+each other tell, or four that are far apart, as those are where long steps are nearly unstable or
+far longer than a contact; of noise, whose differences rise and fall, the mean of four."""
 _LONG = 4
 _PATIENCE, _TIMES = 60.0, 30.0
 """A run is not begun if it takes longer [s], and so many times as long as all before."""
@@ -116,7 +116,7 @@ class Search:
 
     def _over(self, outcome: Outcome, found: Coupled) -> str:
         """Why no other step is tried; "" if one is."""
-        patience = 2 if self.tried and self.tried[-1].apart < FAR else 3
+        patience = 2 if self.tried and self.tried[-1].apart < FAR else _LONG
         powers = [t.power for t in self.tried[2:]]
         flat = len(powers) >= patience and all(p < _FALLS for p in powers[-patience:])
         flat = flat or (len(powers) >= _LONG and fmean(powers[-_LONG:]) < _FALLS)

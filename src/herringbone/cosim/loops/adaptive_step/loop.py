@@ -53,7 +53,8 @@ from herringbone.cosim.loops.common import (
     get_outputs,
     not_finite,
 )
-from herringbone.cosim.loops.node_pass import begin, restore
+from herringbone.cosim.loops.jumps import take_back
+from herringbone.cosim.loops.node_pass import begin
 from herringbone.cosim.loops.nodes import REFRESH, converge, finish
 from herringbone.kernels.compiling.jit import inlined, kernel
 
@@ -63,16 +64,6 @@ PATIENCE = 100
 """So many smallest steps in a row that err too much end the run. A few do not: at a jump of the
 forces, or from rest, where their size is not yet known, no step is small enough."""
 _DISCARDED = 2
-
-
-@inlined
-def _take_back(layout: Layout, nodes: NodeLayout, buffers: Buffers) -> int:
-    """Parts and history as before the step; -1, or the part that refused."""
-    history = buffers.history
-    for row in range(history.shape[0] - 1):
-        for i in range(history.shape[1]):
-            history[row, i] = history[row + 1, i]
-    return restore(layout, nodes, buffers, True)
 
 
 @inlined
@@ -232,7 +223,7 @@ def _macro_step(
     if failed >= 0 and not (smaller and buffers.counts[2] == _DISCARDED):
         return PART_FAILED, 0, failed
     if smaller and too_much(adaptive, rung, error, nodes.degree):
-        failed = _take_back(layout, nodes, buffers)
+        failed = take_back(layout, nodes, buffers)
         adaptive.rejected[rung] += 1
         wanted = next_rung(adaptive, rung, nodes.degree, _sized(adaptive))
         state[WANTED], state[TAKEN_BACK] = min(rung - 1, wanted), 1
