@@ -113,10 +113,15 @@ class PreparedNodes(PreparedRun):
     def suit(
         self, tolerance: float | None, inner: InnerStepping, channels: Mapping[str, Sequence[str]]
     ) -> None:
-        """Let corrections leave a share of the tolerance that parts are told."""
+        """Let corrections leave a share of the tolerance that parts are told.
+
+        Without a tolerance steps are as they were asked for, and not divided.
+        """
         del inner, channels
         if tolerance:
             self.rest = max(REST, REST_SHARE * tolerance)
+        else:
+            self.jumps = without(self.jumps)
 
     def correct_evenly(self) -> None:
         """See `PreparedRun`; sweeps without a Jacobian go on as long as they better anything."""

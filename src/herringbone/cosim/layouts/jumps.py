@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from herringbone.core.part import of_parts
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.repeating import answers_again, explicit_parts
 
@@ -79,7 +80,10 @@ def _signature(network: Network, p: int) -> "Signature | None":
 
 
 def _can_divide(network: Network) -> bool:
-    """True if all parts can take a step back, and steps of any length."""
+    """True if all parts can take a step back, and steps of any length in which they do the same.
+
+    What parts fused into one do depends on how many of its own steps make a macro step.
+    """
     parts = network.parts
     ticks = any(found.tick for p in range(len(parts)) if (found := _signature(network, p)))
     return (
@@ -87,7 +91,10 @@ def _can_divide(network: Network) -> bool:
         and not explicit_parts(network)
         and not ticks
         and all(
-            part.addresses.can_restore and not part.one_step and not answers_again(part)
+            part.addresses.can_restore
+            and not part.one_step
+            and not of_parts(part)
+            and not answers_again(part)
             for part in parts
         )
     )
