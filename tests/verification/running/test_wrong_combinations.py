@@ -99,7 +99,7 @@ REFUSED = {
     ),
     "single helix": (
         lambda f: {"gear": f / "single.toml"},
-        "single.toml: the pair has halves = 1; the component is double helical: halves = 2",
+        'single.toml": the pair has halves = 1; the component is double helical: halves = 2',
     ),
     "pair's file as housing": (
         lambda f: {"housing": f / "own.toml"},

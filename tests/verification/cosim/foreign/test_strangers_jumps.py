@@ -20,9 +20,6 @@ T_END, RECORD = 0.1, 1e-3
 SPEEDS = np.linspace(0.8, 1.2, 4)
 """Of the first mass [m/s]: contact begins at other places of a step."""
 STEP = 2.5e-4
-JUMP = DAMPING * SPEEDS[-1] * STEP
-"""Impulse [N s] that a jump inside a step errs by, if the step is not divided, by chance of its
-place: over that of a mass of 1 kg at 1 m/s it is the error of the run, 1 %."""
 JOINED = [
     ["one.x", "bumper.x1"], ["one.v", "bumper.v1"], ["two.x", "bumper.x2"],
     ["two.v", "bumper.v2"], ["bumper.f1", "one.f"], ["bumper.f2", "two.f"],
@@ -84,11 +81,12 @@ def error(found, speed):
 
 
 def test_steps_with_a_jump_are_divided(system):
-    """What is left of a jump is far below what a whole step makes of it."""
+    """Where a tolerance is asked for; fixed steps stay as they are, of whose stability is told."""
     for speed in SPEEDS:
-        found = run(system, speed, algorithm="li:degree=3", step=STEP)
-        assert error(found, speed) < 0.01 * JUMP
+        found = run(system, speed, tolerance=1e-2)
         assert any("jump or bend" in note for note in found.info.notes)
+        fixed = run(system, speed, algorithm="li:degree=3", step=STEP)
+        assert not any("jump or bend" in note for note in fixed.info.notes)
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
