@@ -34,7 +34,7 @@ from herringbone.core.facts import Facts
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
-SLOWEST = 1e-6
+_SLOWEST = 1e-6
 """Oscillation over the fastest rate below which it is rounding of rigid rotation."""
 
 
@@ -159,6 +159,11 @@ class NaturalModes(Facts):
         }
 
 
+def oscillating(rates: np.ndarray) -> np.ndarray:
+    """Which eigenvalues (n,) are those of oscillations, one of each pair, and not rounding."""
+    return rates.imag > _SLOWEST * np.abs(rates).max(initial=0.0)
+
+
 def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
     """Modes of a system about its start values.
 
@@ -173,8 +178,7 @@ def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
     with one_blas_thread():
         balanced, (scale, _) = matrix_balance(found.a, permute=False, separate=True)
         rates, left, right = eig(balanced, left=True, right=True)
-    fastest = np.abs(rates).max(initial=0.0)
-    kept = np.flatnonzero(rates.imag > SLOWEST * fastest)
+    kept = np.flatnonzero(oscillating(rates))
     kept = kept[np.argsort(np.abs(rates[kept]), kind="stable")]
     rates, others = rates[kept], int(rates.size - 2 * kept.size) - _unused(found.a)
     left, right = left[:, kept] / scale[:, None], right[:, kept] * scale[:, None]

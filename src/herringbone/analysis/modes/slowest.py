@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import block_diag, eigvals, matrix_balance
 
-from herringbone.analysis.modes.natural_modes import SLOWEST
+from herringbone.analysis.modes.natural_modes import oscillating
 from herringbone.analysis.stability.linear_parts import Member
 from herringbone.analysis.stability.steps.linear_part import CHANGE, OTHER_CHANGE, state_changes
 from herringbone.analysis.stability.surrogates.stand_in import StandIn
@@ -52,7 +52,7 @@ def slowest_oscillation(network: Network, members: Sequence[Member]) -> float | 
     with one_blas_thread():
         whole = a + b @ joined @ np.linalg.solve(np.eye(len(d)) - d @ joined, c)
         rates = eigvals(matrix_balance(whole, permute=False)[0])
-    swinging = rates[rates.imag > SLOWEST * np.abs(rates).max(initial=0.0)]
+    swinging = rates[oscillating(rates)]
     return float(np.abs(swinging).min()) / (2.0 * math.pi) if swinging.size else None
 
 

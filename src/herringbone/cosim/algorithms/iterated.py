@@ -7,8 +7,8 @@ import numpy as np
 
 from herringbone.core.part import of_parts
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, solved_growth
-from herringbone.cosim.algorithms.divided import divide
-from herringbone.cosim.algorithms.divisions import Divisions
+from herringbone.cosim.algorithms.dividing.divided import divide
+from herringbone.cosim.algorithms.dividing.divisions import Divisions
 from herringbone.cosim.algorithms.jacobian import (
     PREDICTION,
     CouplingError,

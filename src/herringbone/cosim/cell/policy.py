@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from herringbone.core import ParameterError
 from herringbone.core.wording import option
@@ -125,24 +125,17 @@ def foreign_fmu_policy(
 def elsewhere(function: Callable[..., T]) -> Callable[..., T]:
     """A function, of a module, that does the same in another process, under the policy of here."""
     here = policy()
-    kept = here.in_process, here.deadline, here.longest_trial, here.most_trial_steps
-    return partial(_under, *kept, function)
+    asked = {
+        "in_process": here.in_process,
+        "deadline": here.deadline,
+        "longest_trial": here.longest_trial,
+        "most_trial_steps": here.most_trial_steps,
+    }
+    return partial(_under, asked, function)
 
 
-def _under(
-    in_process: bool,
-    deadline: float,
-    longest_trial: int | None,
-    most_trial_steps: int | None,
-    function: Callable[..., T],
-    *arguments: object,
-) -> T:
-    with foreign_fmu_policy(
-        in_process=in_process,
-        deadline=deadline,
-        longest_trial=longest_trial,
-        most_trial_steps=most_trial_steps,
-    ):
+def _under(asked: dict[str, Any], function: Callable[..., T], *arguments: object) -> T:
+    with foreign_fmu_policy(**asked):
         return function(*arguments)
 
 

@@ -26,6 +26,8 @@ BOUND = 1e30
 """Signals beyond this, in SI units, have diverged."""
 LAST_GOOD = 1
 """Largest FMI status after which a run goes on: fmi2Warning."""
+DISCARDED = 2
+"""FMI status of a part that takes no such step, but may take a shorter one: fmi2Discard."""
 _REAL, _REFERENCE = 8, 4
 
 

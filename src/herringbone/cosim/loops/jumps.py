@@ -4,7 +4,7 @@ The difference of order p over the p + 1 nodes of a smooth output falls with h^p
 bends inside the step with h, and that of one that jumps stays. It is small by chance where a bend
 lies in the middle of the nodes; the sum of the second differences is not, which falls with h^2, h
 and not at all. A step in which one of both is far more than in the steps before is taken back, and
-divided; see `algorithms.divided`.
+divided; see `algorithms.dividing.divided`.
 """
 
 import numpy as np

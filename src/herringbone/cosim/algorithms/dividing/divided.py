@@ -19,7 +19,7 @@ from herringbone.cosim.algorithms.jacobian import PREDICTION, CouplingError, cor
 from herringbone.cosim.layouts.jumps import without
 from herringbone.cosim.layouts.layout import Chunk
 from herringbone.cosim.layouts.nodes import Control
-from herringbone.cosim.loops.common import COUPLING_FAILED, DONE, PART_FAILED
+from herringbone.cosim.loops.common import COUPLING_FAILED, DISCARDED, DONE, PART_FAILED
 from herringbone.cosim.loops.jumps import FLOOR, JUMPED, SUDDEN, step_back
 from herringbone.cosim.loops.nodes import run_iterated
 
@@ -42,7 +42,6 @@ _FIRST, _ONE_IN = 16, 4
 _LONG_AGO = 1e9
 """Macro steps since values that tell nothing."""
 _NEVER = 2**62
-_DISCARDED = 2
 
 
 @dataclass
@@ -115,7 +114,7 @@ class _Dividing:
             if status == JUMPED:
                 pieces += piece.halves(jumps.found.copy())
                 continue
-            if status == PART_FAILED and run.buffers.counts[2] == _DISCARDED:
+            if status == PART_FAILED and run.buffers.counts[2] == DISCARDED:
                 return self._refused(piece.begin)
             if status != DONE:
                 return status, self._chunk.start, culprit

@@ -1,4 +1,4 @@
-"""What is known of the macro steps of a run that were divided; see `divided`."""
+"""What is known of the macro steps of a run that were divided; see `dividing.divided`."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -45,6 +45,7 @@ from herringbone.cosim.loops.adaptive_step.step_error import (
     update_sizes,
 )
 from herringbone.cosim.loops.common import (
+    DISCARDED,
     DONE,
     LAST_GOOD,
     NOT_FINITE,
@@ -63,7 +64,6 @@ STEP_LIMIT = 5
 PATIENCE = 100
 """So many smallest steps in a row that err too much end the run. A few do not: at a jump of the
 forces, or from rest, where their size is not yet known, no step is small enough."""
-_DISCARDED = 2
 
 
 @inlined
@@ -220,7 +220,7 @@ def _macro_step(
     t, h = chunk.t0 + done * chunk.h, adaptive.rungs[rung] * chunk.h
     failed, error = _try(layout, nodes, buffers, control, adaptive, t, h)
     smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), left) < rung
-    if failed >= 0 and not (smaller and buffers.counts[2] == _DISCARDED):
+    if failed >= 0 and not (smaller and buffers.counts[2] == DISCARDED):
         return PART_FAILED, 0, failed
     if smaller and too_much(adaptive, rung, error, nodes.degree):
         failed = take_back(layout, nodes, buffers)

@@ -1,0 +1,1 @@
+"""Macro steps in which outputs of foreign parts jump, taken in pieces."""
