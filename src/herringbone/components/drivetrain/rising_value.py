@@ -9,7 +9,7 @@ that of the input. It has no state.
 import numpy as np
 
 from herringbone.core import Component, Declaration, Kernels, output, parameter
-from herringbone.core.declaring.roles import Quantity
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.compiling.jit import kernel
 
@@ -28,6 +28,7 @@ _d = Declaration(
         parameter("load_ramp_time", "s", "the value rises from zero over this time", 0.0,
                   minimum=0, quantity=Quantity.LOAD_RAMP_TIME),
     ],
+    roles=[Role.SET_POINT],
 )  # fmt: skip
 
 _RATIO, _TORQUE, _SPEED, _FORCE, _POWER = _d.indices(*_OUTPUTS)

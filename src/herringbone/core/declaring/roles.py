@@ -28,6 +28,7 @@ class Role(StrEnum):
     SENSOR = "sensor"
     ROTOR = "rotor"
     SOURCE = "torque source"
+    SET_POINT = "set point"
 
 
 class PortKind(StrEnum):

@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.components.registry import COMPONENTS
+from herringbone.components.registry import component, components_for
 from herringbone.core import FmuError
-from herringbone.core.declaring.roles import Quantity
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.part import Part, closing_all
 from herringbone.core.places.part_path import PartPath
 from herringbone.core.process.activity import activity
@@ -169,8 +169,8 @@ def _peaks(spec: PartSpec, given: Sequence[str], taken: Sequence[str], h: float)
 def _outputs() -> dict[str, tuple[str, str]]:
     """Components that let a value rise, and their outputs, by unit."""
     return {
-        v.unit: (name, v.name)
-        for name, kind in COMPONENTS.items()
+        v.unit: (kind.name, v.name)
+        for kind in components_for(Role.SET_POINT)
         for v in kind.declaration.offered(Quantity.RISING_VALUE)
     }
 
@@ -190,12 +190,12 @@ def _not_raised(point: _SetPoint) -> str:
 def _with_rising(system: System, spec: PartSpec, point: _SetPoint) -> System:
     """The system with a part that lets a set point rise."""
     units = _outputs()
-    component, output = units[point.unit] if point.unit else next(iter(units.values()))
-    declaration = COMPONENTS[component].declaration
+    kind, output = units[point.unit] if point.unit else next(iter(units.values()))
+    declaration = component(kind).declaration
     (final,) = declaration.offered(Quantity.FINAL_VALUE)
     name = f"{spec.name}_{_NAMES.sub('_', point.name).strip('_')}_rising"
     assert point.value is not None
-    part = PartSpec(PartPath(name), component=component, values={final.name: point.value})
+    part = PartSpec(PartPath(name), component=kind, values={final.name: point.value})
     return replace(
         system,
         parts=(*system.parts, part),
