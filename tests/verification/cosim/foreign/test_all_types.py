@@ -196,10 +196,10 @@ def test_adaptive_step_exchanges_at_its_own_points(all_types):
 @pytest.mark.parametrize(
     ("connection", "said"),
     [
-        (("a.Int64_out", "b.Int32_in"), "a Int64 does not fit into a Int32 without loss"),
-        (("a.y", "b.pair"), "'a.y[1]' -> 'b.pair[1]': a Float64 does not fit into a Int32"),
+        (("a.Int64_out", "b.Int32_in"), "Int64 does not fit into Int32 without loss"),
+        (("a.y", "b.pair"), "'a.y[1]' -> 'b.pair[1]': Float64 does not fit into Int32"),
         (("a.turned", "b.u"), "'a.turned' has 4 elements and 'b.u' has 2 elements"),
-        (("a.Boolean_out", "b.Int8_in"), "a Boolean does not fit into a Int8 without loss"),
+        (("a.Boolean_out", "b.Int8_in"), "Boolean does not fit into Int8 without loss"),
     ],
 )
 def test_what_does_not_fit_is_refused(all_types, connection, said):
