@@ -68,7 +68,13 @@ def description(part: str, *, saves: bool, varies: bool = True) -> str:
 
 
 def drivetrain(
-    folder: Path, fmi: int, abilities: str = "", *, saves: bool = True, steps: str = ""
+    folder: Path,
+    fmi: int,
+    abilities: str = "",
+    *,
+    saves: bool = True,
+    steps: str = "",
+    asks: bool = True,
 ) -> Path:
     """Folder of the system.
 
@@ -78,6 +84,7 @@ def drivetrain(
         abilities: of the rotors, such as EVENTS, of FMI 3.0.
         saves: parts save their states.
         steps: longest and shortest one that rotors take [s], two numbers; one length is told.
+        asks: rotors that declare WITHIN ask for their torque within a step.
     """
     files = {}
     longest, shortest = steps.split() if steps else ("", "")
@@ -91,7 +98,7 @@ def drivetrain(
         if fmi > 2:
             within = ("tau",) if WITHIN in abilities and part == "ROTOR" else ()
             told = as_fmi3(told, abilities if part == "ROTOR" else "", within)
-            defines += ("WITHIN",) if within else ()
+            defines += ("WITHIN",) if within and asks else ()
         files[part] = compiled_fmu(SOURCE, told, place, defines)
     parts = {"motor": files["ROTOR"], "shaft": files["COUPLING"], "load": files["ROTOR"]}
     return write_system(folder, "system", JOINED, parts)
