@@ -37,6 +37,8 @@ count for it."""
 _FALL, _LEAST, _MOST = 8.0, 2.0, 16.0
 """Of differences as the step is halved: third order if nothing is known; least, and most as far as
 longer steps tell it."""
+_STAYS = 2.0**0.5
+"""Fall below which differences do not fall with the step: of half an order."""
 _SAME = 1e-9
 
 
@@ -197,6 +199,11 @@ def _by_falls(longer: Apart, falls: Mapping[str, float], step: float, how: str) 
     groups = {name: shares[name] * d for name, d in longer.groups.items()}
     worst = max(groups, key=groups.__getitem__, default="")
     share = shares.get(worst, _share(_FALL))
+    if (fall := falls.get(worst, _FALL)) < _STAYS:
+        how += (
+            f", between which differences fall by {fall:.2g} only, as with jumps, noise or inner "
+            "steps at their longest: it may be off by an order of magnitude"
+        )
     return Verification(groups, longer.worst, share * longer.worst_difference, step, how)
 
 
