@@ -206,6 +206,17 @@ def test_what_does_not_fit_is_refused(all_types, connection, said):
     refused(said, two(all_types["plain"], connection), {})
 
 
+@pytest.mark.parametrize(
+    ("connection", "given"),
+    [(("a.Int8_out", "b.Int8_in"), {"b.Int8_in": 3}), (("a.y", "b.u"), {"b.u": [1.0, 2.0]})],
+)
+def test_a_start_value_of_a_connected_input_is_told(all_types, connection, given):
+    result = run(two(all_types["plain"], connection), given, t_end=0.2)
+    (name,) = given
+    said = f"b: the start value of {name.removeprefix('b.')} has no effect"
+    assert any(note.startswith(said) for note in result.info.notes)
+
+
 def test_types_of_fmi2(selector):
     pairs = [(f"a.{n}_shown", f"b.{n}") for n in ("gear", "engaged", "label")]
     values = {"a.gear": 3, "a.engaged": True, "a.label": "drei, ä"}
