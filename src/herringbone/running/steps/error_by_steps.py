@@ -49,7 +49,7 @@ def can_be_verified(system: System, result: Result, found: Coupled, asked: Asked
         and asked.probe
         and not found.algorithm.adaptive
         and result.verification is None
-        and result.outcome.completed
+        and result.outcome.ended_well
     )
 
 
@@ -137,7 +137,7 @@ class _Others:
                 found = with_step(self.system, scene, self.found, self.asked, step)
         except HerringboneError:  # no reason to lose a run that has ended
             return None
-        return found.result if found.result.outcome.completed else None
+        return found.result if found.result.outcome.ended_well else None
 
     def _halved(self, end: float, own: Result | None = None) -> Apart | None:
         """Differences from the run with half the step up to a time [s]; None: it is not taken."""

@@ -65,7 +65,7 @@ class Search:
         outcome = found.result.outcome
         self._steps = round(found.result.info.t_end / found.recording.step)
         self._seconds += found.recording.wall_seconds
-        if outcome.completed:
+        if outcome.ended_well:
             self.tried.append(self._judged(found))
         else:
             self.failed.append((found.recording.step, outcome))
@@ -121,11 +121,11 @@ class Search:
         powers = [t.power for t in self.tried[2:]]
         flat = len(powers) >= patience and all(p < _FALLS for p in powers[-patience:])
         flat = flat or (len(powers) >= _LONG and fmean(powers[-_LONG:]) < _FALLS)
-        lost = not outcome.completed and not outcome.unstable and self._failed_for_good()
+        lost = not outcome.ended_well and not outcome.unstable and self._failed_for_good()
         reasons = {
             "the run with a shorter step was interrupted": outcome.kind is OutcomeKind.INTERRUPTED,
             outcome.message: lost,
-            "met": outcome.completed and self.tried[-1].error <= self._tolerance,
+            "met": outcome.ended_well and self.tried[-1].error <= self._tolerance,
             "the differences do not fall with the step, as with noise or jumps": flat,
             f"{_RUNS} runs were made": len(self.tried) + len(self.failed) >= _RUNS,
         }

@@ -170,3 +170,13 @@ def test_fmi2_part_that_ends_the_simulation(tmp_path, mass, end):
         f"the part came to {end:g} s; if it discarded the step, a smaller one"
         in found.outcome.message
     )
+
+
+@pytest.mark.parametrize("options", [{"step": None, "tolerance": 1e-3}, {"step": 1e-4}])
+def test_the_error_of_a_run_that_a_part_ends_is_told(tmp_path, mass, options):
+    """As of one that completes, up to there; a tolerance is met."""
+    file, _ = mass(*named("N.m", "rad", "rad/s"))
+    result = run(system(tmp_path / "s", file, file), {"end": 0.015}, **options)
+    assert result.outcome.kind is OutcomeKind.ENDED
+    assert result.outcome.time == pytest.approx(0.015, rel=1e-9)
+    assert 0.0 < result.verification.error <= 1e-3
