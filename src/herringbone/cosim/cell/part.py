@@ -46,6 +46,7 @@ class CellPart:
         folder: where it is extracted.
         cell: in which it is instantiated.
         owned: cell and folder belong to the part, and end with it.
+        variables: of the model, if they have been read.
 
     Raises:
         FmuError: it does not instantiate, or the cell does not survive that.
@@ -60,11 +61,12 @@ class CellPart:
         cell: Cell,
         *,
         owned: bool,
+        variables: Mapping[str, PartVariable] | None = None,
     ) -> None:
         self.name, self.file, self.model = name, file, model
         self.has_states: bool | None = None
         self.signature: Signature | None = None
-        self.variables: Mapping[str, PartVariable] = read_variables(model)
+        self.variables: Mapping[str, PartVariable] = variables or read_variables(model)
         abilities = model.coSimulation
         self.once = bool(abilities.canBeInstantiatedOnlyOncePerProcess)
         self.one_step = not abilities.canHandleVariableCommunicationStepSize

@@ -20,6 +20,7 @@ from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
 from herringbone.cosim.fmu.unpacked import unpacked
+from herringbone.cosim.fmu.variables import changes, read_variables
 
 T = TypeVar("T")
 
@@ -121,13 +122,15 @@ def _instances(
     name: str, file: Path, model: ModelDescription, folder: Path
 ) -> Iterator[Callable[[], CellPart]]:
     cells: list[Cell] = []
+    variables = None if changes(model) else read_variables(model)
 
     def make() -> CellPart:
         free = [cell for cell in cells if not (cell.lost or (cell.once and cell.has_instances))]
         if not free:
             free = [cell_for(name, file, model, folder)]
             cells.append(free[-1])
-        return CellPart(name, file, read_fmu(file), folder, free[-1], owned=False)
+        own = read_fmu(file) if variables is None else model
+        return CellPart(name, file, own, folder, free[-1], owned=False, variables=variables)
 
     try:
         yield make

@@ -11,7 +11,7 @@ from herringbone.core import FmuError
 from herringbone.core.declaring.declaration import node_name
 from herringbone.core.declaring.variable import NODES
 from herringbone.core.names import shown
-from herringbone.core.part import PartVariable
+from herringbone.core.part import STRUCTURE, PartVariable
 from herringbone.cosim.fmu.file import is_fmi3
 
 _NODES = ".node"
@@ -107,6 +107,11 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
         )
         for name, reference, v in _named(model)
     }
+
+
+def changes(model: ModelDescription) -> bool:
+    """True if an instance may change its model, see `resized`: each then needs one of its own."""
+    return any(v.causality == STRUCTURE for v in model.modelVariables)
 
 
 def resized(model: ModelDescription, name: str, size: int) -> dict[str, PartVariable]:

@@ -84,7 +84,7 @@ def first_unstable_near(growth: GrowthOf, limit: float) -> float:
     low = _NEAR * limit
     while low > SMALLEST_STEP and _grows(safe_growth(growth, low)):
         low *= _NEAR
-    samples = _along(growth, low, limit / _NEAR)
+    samples = _along(growth, low, limit / _NEAR, beyond=False)
     if _grows(samples[0][1]):
         return low
     for (before, _), (step, value) in pairwise(samples):
@@ -149,10 +149,15 @@ def _closely(growth: GrowthOf, first: float) -> list[tuple[float, Growth]]:
     return _along(growth, first / _CLOSELY, first * _CLOSELY)
 
 
-def _along(growth: GrowthOf, low: float, high: float) -> list[tuple[float, Growth]]:
-    """Growth at steps so close together that no motion meets its mirror image between them."""
+def _along(
+    growth: GrowthOf, low: float, high: float, *, beyond: bool = True
+) -> list[tuple[float, Growth]]:
+    """Growth at steps so close together that no motion meets its mirror image between them.
+
+    Without `beyond` none above the first unstable one.
+    """
     found = [(low, safe_growth(growth, low))]
-    while found[-1][0] < high:
+    while found[-1][0] < high and (beyond or not _grows(found[-1][1])):
         step, value = found[-1]
         step = min(step * _apart(value), high)
         found.append((step, safe_growth(growth, step)))

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, HerringboneError
 from herringbone.cosim.cell.block import FUNCTIONS, INSTANCES, SERVER, STATES, places
@@ -21,10 +22,12 @@ from herringbone.cosim.cell.inside.loading import Code, loaded
 from herringbone.cosim.cell.inside.surroundings import surroundings
 from herringbone.cosim.cell.sides import Side
 from herringbone.cosim.cell.wire import packed, unpacked
+from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.float_modes import leave_modes
 from herringbone.cosim.fmu.fmi3.adapters import ADAPTERS, use_adapters
 from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
+from herringbone.cosim.fmu.variables import changes
 
 _SLEEP = 1.0
 _LOOK = 0.25
@@ -62,6 +65,9 @@ class Server:
         self._server["orders"] = self._orders.ctypes.data
         self._parts: dict[int, FmuPart] = {}
         self._states: dict[int, np.ndarray] = {}
+        self._model: ModelDescription | None = None
+        self._first: FmuPart | None = None
+        self._folder = Path()
         self._libraries: list[ctypes.CDLL] = []
         self._before: dict[str, object] = {}
         self._serve, self._answer = (_POINTER(code.address(n)) for n in ("serve", "answer"))
@@ -123,11 +129,21 @@ class Server:
         """Instantiate; which of the part's functions there are."""
         self.folders.add(folder)
         self._before = self._before or surroundings()
-        part = new_part(name, Path(file), Path(folder))
+        part = self._new_part(name, Path(file), Path(folder))
         self._parts[number] = part
         self._states[number] = np.zeros(STATES, np.int64)
         self._functions[number]["states"] = self._states[number].ctypes.data
         return self._connect(number)
+
+    def _new_part(self, name: str, file: Path, folder: Path) -> FmuPart:
+        """An instance of the cell's one FMU; there may be hundreds, so what they share is kept."""
+        if self._model is None or changes(self._model):
+            self._model, self._first = read_fmu(file), None
+        alike = self._first if self._first and self._folder == folder else None
+        part = new_part(name, file, folder, self._model, alike)
+        if alike is None:  # its library stays loaded, see `_free`
+            self._first, self._folder = part, folder
+        return part
 
     def _connect(self, number: int) -> list[bool]:
         at = self._parts[number].addresses
