@@ -11,6 +11,7 @@
    Events: parameter 210, every so many seconds, 0 never; output 211, Int32, counts them; they are
    handled in event mode if it is used, else in the step. Parameter 212: time of the end, 0 never;
    213: the discrete states never settle, if not 0. 214: discrete Float64 input, 215 its output.
+   216: if not 0, it tells the time of the next event in event mode, and does not stop for it.
    While event mode is used, discrete inputs are refused outside; after initialisation the value 13
    of the input of UInt64. With the token "no events" it does not instantiate with event mode. */
 #include <math.h>
@@ -32,7 +33,7 @@ typedef struct {
 } Bytes;
 typedef struct {
     Bytes in[TYPES], out[TYPES];
-    double u[MOST], y[MOST], m[4], every, end, restless, discrete;
+    double u[MOST], y[MOST], m[4], every, end, restless, discrete, told;
     int32_t pair[2], events;
     uint64_t n;
 } Values;
@@ -120,7 +121,9 @@ EXPORT Status fmi3UpdateDiscreteStates(void *c, bool *more, bool *ends, bool *no
     if (!part->in_event) return refuse(part, "no event mode");
     count_event(&part->values, now);
     *more = part->values.restless != 0.0;
-    *ends = *nominals = *states = *timed = false;
+    *ends = *nominals = *states = false;
+    *timed = part->values.told != 0.0 && part->values.every > 0.0;
+    *next = (part->values.events + 1) * part->values.every;
     return OK;
 }
 
@@ -133,7 +136,7 @@ EXPORT Status fmi3DoStep(void *c, double t, double h, bool no_rollback, bool *ev
     *event = *ends = *early = false;
     if (v->every > 0.0) {
         double next = (v->events + 1) * v->every;
-        if (part->events_used && next < to + 1e-9) {
+        if (part->events_used && v->told == 0.0 && next < to + 1e-9) {
             *event = true;
             if (part->early_allowed && next < to - 1e-9) {
                 *early = true;
@@ -143,7 +146,7 @@ EXPORT Status fmi3DoStep(void *c, double t, double h, bool no_rollback, bool *ev
     }
     if (v->end > 0.0 && v->end < to + 1e-9) {
         *ends = true;
-        *early = v->end < t + h - 1e-9;
+        *early = part->early_allowed && v->end < t + h - 1e-9;
         to = v->end;
     }
     for (uint64_t k = 0; k < v->n; ++k) v->y[k] += v->u[k] * (to - t);
@@ -241,7 +244,8 @@ EXPORT Status fmi3SetFloat64(void *c, const Reference *vr, size_t n, const doubl
     for (size_t i = 0; i < n; ++i) {
         size_t size = vr[i] == 201 ? v->n : vr[i] == 203 ? 4 : 1;
         double *to = vr[i] == 201 ? v->u : vr[i] == 203 ? v->m : vr[i] == 210 ? &v->every
-                   : vr[i] == 212 ? &v->end : vr[i] == 213 ? &v->restless : &v->discrete;
+                   : vr[i] == 212 ? &v->end : vr[i] == 213 ? &v->restless
+                   : vr[i] == 216 ? &v->told : &v->discrete;
         if (vr[i] == 214 && may_set_discrete(part) != OK) return ERROR;
         if (at + size > count) return refuse(part, "too few values");
         memcpy(to, value + at, size * sizeof(double));
@@ -257,7 +261,8 @@ EXPORT Status fmi3GetFloat64(void *c, const Reference *vr, size_t n, double *val
         size_t size = vr[i] == 201 || vr[i] == 202 ? v->n : vr[i] == 203 || vr[i] == 204 ? 4 : 1;
         const double *from = vr[i] == 201 ? v->u : vr[i] == 202 ? v->y : vr[i] == 203 ? v->m
                            : vr[i] == 204 ? turned : vr[i] == 210 ? &v->every
-                           : vr[i] == 212 ? &v->end : vr[i] == 213 ? &v->restless : &v->discrete;
+                           : vr[i] == 212 ? &v->end : vr[i] == 213 ? &v->restless
+                   : vr[i] == 216 ? &v->told : &v->discrete;
         memcpy(value + at, from, size * sizeof(double));
         at += size;
     }

@@ -5,7 +5,8 @@
              own torque is there from a time on, which is an event
    COUPLING  inputs a.phi, a.w, b.phi, b.w, outputs a.tau, b.tau: a massless spring-damper
 
-   With WITHIN a rotor asks for its torque within a step, and is exact for parabolas of it. */
+   With WITHIN a rotor asks for its torque within a step, and is exact for parabolas of it. It
+   refuses steps longer than LONGEST and shorter than SHORTEST. */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -75,8 +76,13 @@ static Status piece(Model *m, double t, double h) {
     m->time = t + h;
     return OK;
 }
+#ifndef LONGEST
+#define LONGEST INFINITY
+#define SHORTEST 0.0
+#endif
 static Status step(Model *m, double t, double h) {
     double to = t + h;
+    if (PART == ROTOR && (h > LONGEST * (1.0 + 1e-9) || h < SHORTEST * (1.0 - 1e-9))) return ERROR;
     if (NEXT_EVENT(m) < to) {
         double at = NEXT_EVENT(m);
         piece(m, t, at - t);

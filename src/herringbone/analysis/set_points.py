@@ -7,7 +7,7 @@ from herringbone.components.registry import component
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaring.roles import GEARS, PortKind, Quantity, Role
 from herringbone.core.declaring.variable import Causality
-from herringbone.core.wording import setting
+from herringbone.core.wording import setting, settings
 from herringbone.cosim.structure.system import System
 
 SPEED, TORQUE = "speed", "torque"
@@ -119,7 +119,7 @@ def _start_speed(system: System) -> str:
     pairs = [n for n in anatomy(system).with_role(Role.GEAR_PAIR) if not system.part(n).foreign]
     if not pairs or not system.foreign_parts:
         return ""
-    speeds = " and ".join(setting(_speed_of(system, pair), "RAD_PER_S") for pair in pairs)
+    speeds = settings({_speed_of(system, pair): "RAD_PER_S" for pair in pairs})
     return f"; where the start is no equilibrium, {speeds} is the gears' speed, else 0"
 
 

@@ -72,6 +72,11 @@ class Outcome:
         return self.kind is OutcomeKind.COMPLETED
 
     @property
+    def ended_well(self) -> bool:
+        """True if the run completed, or ended where a part wanted it to."""
+        return self.completed or self.kind is OutcomeKind.ENDED
+
+    @property
     def reached_end(self) -> bool:
         """True if the run reached its end, with whatever values."""
         return self.kind in _REACHED_END

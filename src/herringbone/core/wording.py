@@ -4,7 +4,7 @@ Who types commands reads `--record-step 1e-4`, who writes scripts `record_step=1
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 _as_options = [False]
@@ -58,9 +58,15 @@ def setting(path: str, value: float | str) -> str:
         path: `instance.variable`.
         value: a number, or what stands for one, such as "...".
     """
+    return settings({path: value})
+
+
+def settings(values: Mapping[str, float | str]) -> str:
+    """Values of variables that are set together, see `setting`: an option each, or one argument."""
     if _as_options[0]:
-        return f"--set {path}={_shown(value)}"
-    return f'values={{"{path}": {_shown(value)}}}'
+        return " ".join(f"--set {path}={_shown(value)}" for path, value in values.items())
+    entries = ", ".join(f'"{path}": {_shown(value)}' for path, value in values.items())
+    return f"values={{{entries}}}"
 
 
 def _shown(value: float | str | bool | None) -> str:

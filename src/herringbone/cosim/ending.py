@@ -46,10 +46,16 @@ class Ending:
             complete = self._done == run.grid.count
             return self._at_end() if complete else Outcome.interrupted(reached)
         if status == REFUSED:
+            culprit = next(
+                p for p, part in enumerate(run.network.parts) if part.name == run.others.asked
+            )
+        if (end := self._asked_for(status, culprit)) is not None:
+            late = reached - run.grid.step < end.time  # a cell tells of a step with the next one
+            time = end.time if late else reached
+            return Outcome(end.kind, time, end.culprit, end.message)
+        if status == REFUSED:
             message = f"{run.refusal}, at {reached:g} s"
             return Outcome(OutcomeKind.PART_FAILED, reached, run.others.asked, message)
-        if (end := self._asked_for(status, culprit)) is not None:
-            return Outcome(end.kind, max(end.time, reached), end.culprit, end.message)
         return self._failure(status, culprit)
 
     def _at_end(self) -> Outcome:
@@ -76,7 +82,8 @@ class Ending:
     def _asked_for(self, status: int, culprit: int) -> Outcome | None:
         """The end that a part asked for; None if none did."""
         every = self._run.network.parts
-        asked = {PART_FAILED: every[culprit : culprit + 1], COUPLING_FAILED: every}
+        one = every[culprit : culprit + 1]
+        asked = {PART_FAILED: one, REFUSED: one, COUPLING_FAILED: every}
         for part in asked.get(status, ()):
             if (end := part.ended()) is not None:
                 message = f"{part.name} ended the simulation at {end:g} s"

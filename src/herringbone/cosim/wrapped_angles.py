@@ -4,7 +4,7 @@ An angle that jumps by 2 pi while its speed says nothing of it twists what hangs
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -19,13 +19,18 @@ _FEWEST = 3
 
 
 def wrapped_angles(
-    names: Sequence[str], variables: Sequence[PartVariable], times: np.ndarray, values: np.ndarray
+    names: Sequence[str],
+    variables: Sequence[PartVariable],
+    taken: Collection[str],
+    times: np.ndarray,
+    values: np.ndarray,
 ) -> list[str]:
     """A line for each recorded angle of a foreign part that jumps by a turn.
 
     Args:
         names: `instance.variable` (m).
         variables: of them (m).
+        taken: names of those that are connected.
         times: of the records (n,) [s].
         values: recorded, in the units of the variables (n, m).
     """
@@ -44,9 +49,10 @@ def wrapped_angles(
         speed = None if rate is None else in_si(place[rate])
         if jumps := _jumps(times, in_si(k), speed):
             more = f" and at {len(jumps) - 1} more times" if len(jumps) > 1 else ""
+            twist = ", and what is connected to it is twisted by 2 pi; let it count on"
             found.append(
-                f"{name} jumps by a turn at {times[jumps[0]]:.6g} s{more}: the part wraps its "
-                "angle, and what is connected to it is twisted by 2 pi; let it count on"
+                f"{name} jumps by a turn at {times[jumps[0]]:.6g} s{more}: the part wraps its angle"
+                + (twist if name in taken else "; nothing is connected to it")
             )
     return found
 

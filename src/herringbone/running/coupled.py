@@ -20,6 +20,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.coupling_choice import Asked, way_of
 from herringbone.running.foreign.interfaces import exchanged_outputs
+from herringbone.running.foreign.remarks import remarks_of
 from herringbone.running.fused.beside import (
     KIND,
     fused_beside,
@@ -131,6 +132,7 @@ def _coupled(
             )
         recording = with_core_steps(recording, opened)
         lines += _step_notes(way.wanted, algorithm, recording)
+        lines += remarks_of(opened, system.foreign_parts, recording.outcome)
         every = make_result(
             system, scene, algorithm, kind, recording, lines, by_default=asked.by_default
         )

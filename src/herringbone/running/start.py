@@ -59,7 +59,9 @@ def started(
         if system.foreign_parts and trial_step is not None:
             system, _, lines = raised(system, trial_step)
             notes += lines
-        system = system.with_values(ramps(system, LOAD_RAMP_TIME))
+        if not (values := ramps(system, LOAD_RAMP_TIME)):
+            notes += (f"{option('start', 'ramp')}: nothing is known that could rise from zero",)
+        system = system.with_values(values)
     if start is not Start.REST:
         try:
             values, lines = equilibrium_values(system)

@@ -59,6 +59,7 @@ def description(abilities: str = "") -> str:
 <Int32 name="events" valueReference="211" causality="output"/>
 <Float64 name="end" valueReference="212" causality="parameter" variability="fixed" start="0"/>
 <Float64 name="restless" valueReference="213" causality="parameter" variability="fixed" start="0"/>
+<Float64 name="told" valueReference="216" causality="parameter" variability="fixed" start="0"/>
 <Float64 name="d" valueReference="214" causality="input" variability="discrete" start="0"/>
 <Float64 name="d_out" valueReference="215" causality="output" variability="discrete"/>
 </ModelVariables>

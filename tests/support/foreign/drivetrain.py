@@ -36,7 +36,7 @@ _ATTRIBUTES = {
 }
 
 
-def description(part: str, *, saves: bool) -> str:
+def description(part: str, *, saves: bool, varies: bool = True) -> str:
     """modelDescription.xml of FMI 2.0; the outputs of a rotor depend on nothing."""
     kinds = zip(("input", "output", "parameter"), _VARIABLES[part], strict=True)
     rows = [(name, kind) for kind, names in kinds for name in names]
@@ -53,9 +53,11 @@ def description(part: str, *, saves: bool) -> str:
     places = [place for place, (_, kind) in enumerate(rows, 1) if kind == "output"]
     outputs = "".join(f'<Unknown index="{place}"{depends}/>' for place in places)
     state = ' canGetAndSetFMUstate="true"' if saves else ""
+    if varies:
+        state += ' canHandleVariableCommunicationStepSize="true"'
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="drivetrain" guid="t">
-<CoSimulation modelIdentifier="drivetrain" canHandleVariableCommunicationStepSize="true"{state}/>
+<CoSimulation modelIdentifier="drivetrain"{state}/>
 <UnitDefinitions><Unit name="N.m"><BaseUnit kg="1" m="2" s="-2"/></Unit>
 <Unit name="rad"><BaseUnit rad="1"/></Unit>
 <Unit name="rad/s"><BaseUnit rad="1" s="-1"/></Unit></UnitDefinitions>
@@ -65,7 +67,15 @@ def description(part: str, *, saves: bool) -> str:
 """
 
 
-def drivetrain(folder: Path, fmi: int, abilities: str = "", *, saves: bool = True) -> Path:
+def drivetrain(
+    folder: Path,
+    fmi: int,
+    abilities: str = "",
+    *,
+    saves: bool = True,
+    steps: str = "",
+    asks: bool = True,
+) -> Path:
     """Folder of the system.
 
     Args:
@@ -73,17 +83,22 @@ def drivetrain(folder: Path, fmi: int, abilities: str = "", *, saves: bool = Tru
         fmi: version of all parts.
         abilities: of the rotors, such as EVENTS, of FMI 3.0.
         saves: parts save their states.
+        steps: longest and shortest one that rotors take [s], two numbers; one length is told.
+        asks: rotors that declare WITHIN ask for their torque within a step.
     """
     files = {}
+    longest, shortest = steps.split() if steps else ("", "")
     more = ("FMI3",) if fmi > 2 else ()
     for part in ("ROTOR", "COUPLING"):
         place = folder / part.lower()
         place.mkdir(parents=True)
-        told, defines = description(part, saves=saves), (f"PART={part}", *more)
+        one = steps != "" and longest == shortest and part == "ROTOR"
+        told, defines = description(part, saves=saves, varies=not one), (f"PART={part}", *more)
+        defines += (f"LONGEST={longest}", f"SHORTEST={shortest}") if steps else ()
         if fmi > 2:
             within = ("tau",) if WITHIN in abilities and part == "ROTOR" else ()
             told = as_fmi3(told, abilities if part == "ROTOR" else "", within)
-            defines += ("WITHIN",) if within else ()
+            defines += ("WITHIN",) if within and asks else ()
         files[part] = compiled_fmu(SOURCE, told, place, defines)
     parts = {"motor": files["ROTOR"], "shaft": files["COUPLING"], "load": files["ROTOR"]}
     return write_system(folder, "system", JOINED, parts)

@@ -1,6 +1,6 @@
 """Words of options and arguments."""
 
-from herringbone.core.wording import option, setting, several_values, words_of_commands
+from herringbone.core.wording import option, setting, settings, several_values, words_of_commands
 
 
 def told():
@@ -25,3 +25,10 @@ def test_scripts_and_commands_read_their_own_words():
         assert told()[4:6] == ["--start rest", "--outside motor --outside road"]
         assert told()[6:] == ["--set motor.w0=3", "--speed 500:3000:26"]
     assert option("as_fmu") == "as_fmu"
+
+
+def test_values_that_are_set_together_are_one_argument():
+    pair = {"gear.flank": 1.0, "bearings.flank": "..."}
+    assert settings(pair) == 'values={"gear.flank": 1, "bearings.flank": ...}'
+    with words_of_commands():
+        assert settings(pair) == "--set gear.flank=1 --set bearings.flank=..."

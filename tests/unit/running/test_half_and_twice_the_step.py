@@ -30,6 +30,15 @@ def test_what_longer_steps_do_not_show(longer, shorter):
     assert found.groups["a"] == pytest.approx(2.0 * shorter if longer else 0.0)
 
 
+@pytest.mark.parametrize(("fall", "told"), [(0.97, True), (1.5, False), (16.0, False)])
+def test_what_hardly_falls_with_the_step_is_told(fall, told):
+    """Of the group that errs most; 2^0.5 is half an order."""
+    longer, falls = {"a": 1e-3, "b": 1e-6}, {"a": fall, "b": 0.1}
+    found = _by_falls(Apart(longer, "x", 1e-3), falls, 1e-5, "by half")
+    assert ("differences fall by 0.97 only" in found.how) == told
+    assert found.how.startswith("by half")
+
+
 def test_when_the_first_part_tells():
     """Not where differences grow, fade or hardly fall; small groups do not count."""
     errors, falls, begun = {"a": 1.0, "b": 0.1}, {"a": 8.0, "b": 8.0}, {"a": 7.0, "b": 0.7}

@@ -38,6 +38,16 @@ def test_rest_leaves_declared_values(rig, loaded):
     assert not any("angle" in name or "speed" in name for name in values(found, "drive_motor"))
 
 
+def test_a_ramp_of_nothing_is_told(tmp_path):
+    """A foreign rotor behind a coupling: no part has a load, and nothing is tried."""
+    (tmp_path / "system.toml").write_text(
+        'connections = [["a.flange", "shaft.flange_a"], ["b.flange", "shaft.flange_b"]]\n[parts]\n'
+        'shaft = { component = "shaft_coupling" }\na = { fmu = "a.fmu" }\nb = { fmu = "b.fmu" }\n'
+    )
+    _, notes = started(read_system(tmp_path), Scene("x", 1.0, 0.1, start=Start.RAMP))
+    assert 'start="ramp": nothing is known that could rise from zero' in notes
+
+
 def test_equilibrium_sets_all_states(rig, loaded):
     found, notes = started(rig, loaded)
     assert notes == ()

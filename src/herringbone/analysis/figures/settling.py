@@ -52,8 +52,9 @@ def unsettled(result: Result) -> list[str]:
         return []
     percent = 100.0 * change
     shown = f"{percent:.0f}" if 10.0 <= percent < 1e6 else f"{percent:.2g}"
+    verb = "change" if name.startswith("outputs") else "changes"
     said = (
-        f"not settled: {name.replace('_', ' ')} changes by {shown} % of its alternating part from "
+        f"not settled: {name.replace('_', ' ')} {verb} by {shown} % of its alternating part from "
         "the third to the last quarter of the run"
     )
     return [f"{said}; {_advice(result)}"]

@@ -19,8 +19,8 @@ _SHORTER = (1e-4, 2e-5, 5e-6)
 """Steps of further trials [s] while something is not clear: an FMU of a gearbox proposes 1 ms, and
 vibrates at kilohertz."""
 _USABLE = (
-    "its description departs from FMI as above, which is up to the tool that made it; it loads and "
-    "steps, and may be used here"
+    "what departs from FMI in its description is up to the tool that made it, and does not keep it "
+    "from being used here"
 )
 
 

@@ -64,7 +64,7 @@ def _why_all(answering: Sequence[str]) -> str:
     if not answering:
         return "all parts save and restore their state"
     names = ", ".join(answering)
+    whose = "its state, but its" if len(answering) == 1 else "their states, but their"
     return (
-        f"{names} cannot save and restore its state, but its direct feedthrough tells what "
-        "corrections change"
+        f"{names} cannot save and restore {whose} direct feedthrough tells what corrections change"
     )

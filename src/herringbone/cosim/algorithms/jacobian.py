@@ -66,14 +66,21 @@ class InterfaceJacobian:
         )  # fmt: skip
         buffers.history[:] = saved
         if failed >= 0 or not np.isfinite(jacobian).all():
-            name = self.network.parts[failed].name if failed >= 0 else "the coupling"
             raise StepRefusedError(
-                f"the interface Jacobian cannot be computed at {t:g} s: {name} fails; "
-                "use a smaller step"
+                f"the interface Jacobian cannot be computed at {t:g} s: {self._who_fails(failed)}; "
+                "use another step"
             )
         self._check_repetition(buffers, off, t)
         jacobian[np.tile(self.nodes.settled != 0, self.nodes.degree)] = 0.0
         return jacobian
+
+    def _who_fails(self, failed: int) -> str:
+        """The part of that number, with what it says of it; the coupling, if negative."""
+        if failed < 0:
+            return "the coupling fails"
+        part = self.network.parts[failed]
+        said = "; ".join(part.messages())
+        return f"{part.name} fails" + (f": {said}" if said else "")
 
     def _check_repetition(self, buffers: Buffers, off: np.ndarray, t: float) -> None:
         largest = np.abs(buffers.nodes).max(axis=0, initial=0.0)

@@ -24,6 +24,8 @@ from herringbone.cosim.fmu.variables import read_variables
 if TYPE_CHECKING:  # a cell starts quicker without
     from herringbone.cosim.signature.signature import Signature
 
+_made: set[str] = set()
+"""Identifiers of FMUs that this process has instantiated."""
 _SHOWN = 8
 _CALCULATED = {
     "output": "an output",
@@ -93,8 +95,16 @@ class FmuPart(ABC):
             self._instantiate()
         except Exception as error:  # fmpy raises bare Exception; loading raises OSError
             self._remove_files()
-            said = "; ".join([str(error), *self.messages()])
+            said = "; ".join([str(error), *self.messages(), *self._only_one()])
             raise FmuError(f"{name}: {file} does not instantiate: {said}") from error
+        _made.add(str(self.model.guid))
+
+    def _only_one(self) -> list[str]:
+        """Why it may not instantiate, if another one of the FMU was made in this process."""
+        if str(self.model.guid) not in _made:
+            return []
+        told = "declares that it" if self.once else "may be one that"
+        return [f"it {told} can be instantiated once only per process, and was before"]
 
     @abstractmethod
     def _load(self, **options: str) -> Any:  # noqa: ANN401 (fmpy's class of the FMI version)

@@ -10,6 +10,8 @@ from herringbone.cosim.structure.system import System
 
 Place = tuple[Part, str]
 """A variable of a part."""
+_SHOWN = 8
+"""Variables of a part, in a message."""
 
 
 class _End(NamedTuple):
@@ -81,9 +83,8 @@ def _end(path: str, system: System, parts: Mapping[str, Part]) -> _End:
     )
     if not suffixes:
         raise StructureError(
-            f"connection '{path}': {name} has no variable or port '{inner}'; it has the ports "
-            + (", ".join(_ports(part)) or "none")
-            + "; join one of these, or leave the connection out of your system.toml"
+            f"connection '{path}': {name} has no variable or port '{inner}'; it has "
+            f"{_has(part)}; join one of these, or leave the connection out of your system.toml"
         )
     return _End(part, inner, suffixes)
 
@@ -93,6 +94,15 @@ def _ports(part: Part) -> list[str]:
     return sorted(
         {n.rpartition(".")[0] for n in names if "." in n and not is_signal_node(part.variables, n)}
     )
+
+
+def _has(part: Part) -> str:
+    """Its ports, or the first of its variables that can be joined, if it has none."""
+    if ports := _ports(part):
+        return f"the ports {', '.join(ports)}"
+    found = [n for n, v in part.variables.items() if v.causality in {"input", "output"}]
+    more = ", ..." if len(found) > _SHOWN else ""
+    return f"no ports, and the inputs and outputs {', '.join(found[:_SHOWN]) or 'none'}{more}"
 
 
 def _elements(part: Part, array: str) -> list[str]:
@@ -108,8 +118,11 @@ def _elements_joined(one: _End, two: _End) -> Iterator[tuple[Place, Place]]:
         [e.removeprefix(end.name) for e in found] for found, end in zip(names, ends, strict=True)
     ]
     if shapes[0] != shapes[1]:
-        sizes = [f"'{end.part.name}.{end.name}' has {len(found) or 'no'} elements"
-                 for found, end in zip(names, ends, strict=True)]  # fmt: skip
+        sizes = [
+            f"'{end.part.name}.{end.name}' "
+            + (f"has {len(found)} elements" if found else "is no array")
+            for found, end in zip(names, ends, strict=True)
+        ]
         raise StructureError(
             f"connection: {' and '.join(sizes)}; arrays of one shape can be connected"
         )

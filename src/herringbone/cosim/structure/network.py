@@ -153,7 +153,7 @@ def _connection(
     where = f"'{output[0].name}.{source.name}' -> '{input_[0].name}.{target.name}'"
     if not fits(source, target):
         raise StructureError(
-            f"connection {where}: a {source.type} does not fit into a {target.type} without loss"
+            f"connection {where}: {source.type} does not fit into {target.type} without loss"
             + (", because their items differ" if source.type == target.type else "")
         )
     factor, offset = 1.0, 0.0

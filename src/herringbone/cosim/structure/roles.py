@@ -37,8 +37,9 @@ def find_roles(connections: Sequence[Connection], parts: Sequence[Part]) -> Role
 
     A circle of parts that pass inputs directly to outputs is cut where they pass forces: such a
     part is a body. A part whose dependencies are not declared counts as an element unless that
-    makes a circle. One that is known to have states is a body, whatever it passes; a part of parts
-    is an element with motion of its own: it takes polynomials of what is stepped before it.
+    makes a circle, or it takes forces alone and gives the motions of their ports. One that is known
+    to have states is a body, whatever it passes; a part of parts is an element with motion of its
+    own: it takes polynomials of what is stepped before it.
 
     Raises:
         StructureError: a circle in which no part passes forces alone.
@@ -62,7 +63,8 @@ def find_roles(connections: Sequence[Connection], parts: Sequence[Part]) -> Role
     notes, bodies = [], set()
     for part in sorted(undeclared - elements - feedthrough):
         alone = {**passed, part: fed[part]}
-        if _circle({*elements, part}, alone, connections):
+        moves = _gives_motion_for_force(parts[part], fed[part])
+        if moves or _circle({*elements, part}, alone, connections):
             bodies.add(part)
             kind = "a body"
         else:
@@ -99,6 +101,12 @@ def _passed_inputs(
         else:
             moving.add(part)
     return passed, undeclared, moving
+
+
+def _gives_motion_for_force(part: Part, inputs: set[str]) -> bool:
+    """True if all inputs are forces, by their names, for which the part gives a motion."""
+    outputs = {name for name, v in part.variables.items() if v.causality == "output"}
+    return all(not outputs.isdisjoint(motion_of_force(name) or ()) for name in inputs)
 
 
 def _waiting(

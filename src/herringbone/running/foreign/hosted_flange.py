@@ -21,6 +21,7 @@ from herringbone.cosim.signature import Kind, Laboratory
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.structure.system import Values
 from herringbone.fmi.packed.documentation import FLANGE_MODELS
+from herringbone.running.foreign.hosted_text import hosted_text
 from herringbone.running.foreign.start_inputs import start_inputs
 from herringbone.running.foreign.started import own_step, started, started_content
 from herringbone.running.foreign.trials import signature_of
@@ -45,6 +46,7 @@ class HostedFlange:
         order, base: of the FMU's model: number of states, and step of its trials [s]; 0: the FMU
             carries the model, of its equations.
         residual: of the model on trials that were not fitted, at the largest finite limit.
+        notes: on the FMU.
     """
 
     fmu: Path
@@ -61,6 +63,9 @@ class HostedFlange:
     def promised(self) -> bool:
         """False if the model is too far from the FMU."""
         return self.residual <= PROMISED
+
+    def __str__(self) -> str:
+        return hosted_text(self)
 
 
 def hosted_flange(fmu: Path, flange: str, host: Host, values: Values | None = None) -> HostedFlange:

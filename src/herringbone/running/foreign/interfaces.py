@@ -22,7 +22,7 @@ def exchanged_outputs(system: System, parts: Sequence[Part]) -> tuple[str, ...]:
 
 
 def unfed(system: System, parts: Sequence[Part]) -> list[str]:
-    """Lines on foreign parts that nothing is connected to, and on ports that are in part.
+    """Lines on foreign parts that are not connected, or in part, and on values without effect.
 
     Args:
         system: of the parts, in the same order.
@@ -39,6 +39,11 @@ def unfed(system: System, parts: Sequence[Part]) -> list[str]:
         used = fed | {c.output for c in connections if c.source == p}
         if not used:
             lines.append(f"{part.name}: nothing is connected to it")
+        if given := sorted(set(spec.values) & (fed | {part.variables[n].array for n in fed})):
+            lines.append(
+                f"{part.name}: the start value of {', '.join(given)} has no effect, as what is "
+                "connected to it gives another one from the start on"
+            )
         ports = {name.rpartition(".")[0] for name in used} - {""}
         missing = [
             name

@@ -13,9 +13,6 @@ from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.running.pairs.mesh_phases import steady_values
 from herringbone.running.pairs.open_flanges import loaded
 
-_TORQUE = 200.0
-"""At pinions that only foreign parts load [N m]; limits hardly depend on it."""
-
 
 def under_load(system: System) -> System:
     """The system with its own parts in steady rotation under load, as they are after a ramp.
@@ -32,7 +29,7 @@ def under_load(system: System) -> System:
         return system
     steady = system.with_values(dict.fromkeys(ramp_times(system), 0.0))
     known = known_parts(steady)
-    own = loaded(known, _TORQUE)
+    own = loaded(known)
     if own is not known:
         values = {
             f"{part.name}.{name}": value

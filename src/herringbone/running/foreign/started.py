@@ -10,6 +10,8 @@ from herringbone.cosim.structure.system import Values
 from herringbone.running.content import digest_of_file, values_of
 
 _STEP = 1e-4
+USUAL_STEPS = (1e-3, 1e-4, 1e-2, 1e-5, 5e-4, 2e-3, 5e-3, 2e-4, 0.1)
+"""That are tried of parts that take steps of one length only [s]."""
 
 
 def started(new: Callable[[], Part], values: Values) -> Callable[[], Part]:
@@ -59,3 +61,8 @@ def proposed_step(fmu: Path) -> float | None:
     """Step that an FMU proposes for experiments [s]; None if it proposes none."""
     experiment = read_fmu(fmu).defaultExperiment
     return float(experiment.stepSize) if experiment and experiment.stepSize else None
+
+
+def takes_one_step(fmu: Path) -> bool:
+    """True if an FMU declares that its steps must all have one length."""
+    return not read_fmu(fmu).coSimulation.canHandleVariableCommunicationStepSize

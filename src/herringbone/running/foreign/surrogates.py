@@ -30,13 +30,10 @@ from herringbone.running.content import contents_of_trials
 from herringbone.running.foreign.foreign_parts import alike, understood
 from herringbone.running.foreign.other_types import held, rounded
 from herringbone.running.foreign.start_inputs import known_start_inputs
-from herringbone.running.foreign.started import own_step
+from herringbone.running.foreign.started import USUAL_STEPS, own_step
 from herringbone.running.foreign.trials import found_signature
 from herringbone.running.known_parts import without_parts
 from herringbone.running.loading import instances, open_parts
-
-_USUAL_STEPS = (1e-3, 1e-4, 1e-2, 1e-5, 5e-4, 2e-3, 5e-3, 2e-4, 0.1)
-"""That are tried of parts that take steps of one length only [s]."""
 
 
 def _instead() -> str:
@@ -172,7 +169,7 @@ def _surrogate(
     begin = _beginning(spec, make, inputs)
     if part.one_step or signature.tick:
         proposed = [own_step(spec.fmu)] if spec.fmu else []
-        steps = list(dict.fromkeys((step, *proposed, *_USUAL_STEPS)))
+        steps = list(dict.fromkeys((step, *proposed, *USUAL_STEPS)))
         return _with_clock(begin, part, signature, ports, steps, stack)
     lab = stack.enter_context(begin.laboratory(inputs, outputs, step))
     at = part.addresses  # an adapter that holds inputs has none of derivatives

@@ -19,8 +19,6 @@ from herringbone.running.known_parts import known_parts
 from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.running.pairs.open_flanges import loaded
 
-_TORQUE = 200.0
-"""At pinions that only foreign parts load [N m], so that meshes are closed."""
 _SHARE = 0.5
 
 
@@ -62,7 +60,7 @@ def _slowest(system: System, step: float | None) -> tuple[float | None, str]:
         except (HerringboneError, np.linalg.LinAlgError):
             pass  # the words say what it is of
     try:
-        own = loaded(known_parts(system), _TORQUE)
+        own = loaded(known_parts(system))
         modes = natural_modes(own.with_values(loaded_start(own)[0]))
     except HerringboneError:
         return None, ""

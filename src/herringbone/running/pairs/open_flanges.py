@@ -12,6 +12,8 @@ from herringbone.cosim.structure.system import System
 
 _OFF = 0.01
 """Share of a torque that may be missing, as a drag torque may take."""
+_CLOSING = 200.0
+"""Torque [N m] at pinions that closes meshes; limits and frequencies hardly depend on it."""
 
 
 class _Open(NamedTuple):
@@ -41,12 +43,12 @@ def balanced(system: System) -> System:
     return system
 
 
-def loaded(system: System, torque: float) -> System:
-    """The system, with a torque [N m] at each open pinion if neither gear is given one."""
+def loaded(system: System) -> System:
+    """The system, with a torque at each open pinion if neither gear is given one."""
     for pair in _open_pairs(system):
         if not any(pair.given):
-            system = system.with_values({pair.torques[0]: torque})
-            pair.given[:] = torque, None
+            system = system.with_values({pair.torques[0]: _CLOSING})
+            pair.given[:] = _CLOSING, None
             system = system.with_values({pair.torques[1]: pair.balance(1)})
     return system
 

@@ -37,6 +37,8 @@ count for it."""
 _FALL, _LEAST, _MOST = 8.0, 2.0, 16.0
 """Of differences as the step is halved: third order if nothing is known; least, and most as far as
 longer steps tell it."""
+_STAYS = 2.0**0.5
+"""Fall below which differences do not fall with the step: of half an order."""
 _SAME = 1e-9
 
 
@@ -47,7 +49,7 @@ def can_be_verified(system: System, result: Result, found: Coupled, asked: Asked
         and asked.probe
         and not found.algorithm.adaptive
         and result.verification is None
-        and result.outcome.completed
+        and result.outcome.ended_well
     )
 
 
@@ -135,7 +137,7 @@ class _Others:
                 found = with_step(self.system, scene, self.found, self.asked, step)
         except HerringboneError:  # no reason to lose a run that has ended
             return None
-        return found.result if found.result.outcome.completed else None
+        return found.result if found.result.outcome.ended_well else None
 
     def _halved(self, end: float, own: Result | None = None) -> Apart | None:
         """Differences from the run with half the step up to a time [s]; None: it is not taken."""
@@ -197,6 +199,11 @@ def _by_falls(longer: Apart, falls: Mapping[str, float], step: float, how: str) 
     groups = {name: shares[name] * d for name, d in longer.groups.items()}
     worst = max(groups, key=groups.__getitem__, default="")
     share = shares.get(worst, _share(_FALL))
+    if (fall := falls.get(worst, _FALL)) < _STAYS:
+        how += (
+            f", between which differences fall by {fall:.2g} only, as with jumps, noise or inner "
+            "steps at their longest: it may be off by an order of magnitude"
+        )
     return Verification(groups, longer.worst, share * longer.worst_difference, step, how)
 
 

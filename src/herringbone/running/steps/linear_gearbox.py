@@ -21,8 +21,6 @@ from herringbone.running.pairs.open_flanges import loaded
 
 STABLE = 2.5
 """Step of classical Runge-Kutta times frequency: 2.8 is the limit."""
-_TORQUE = 200.0
-"""At the pinion of a gearbox that is looked at by itself [N m]."""
 _BOX = frozenset({Role.GEAR_PAIR, Role.BEARING, Role.HOUSING})
 _CHANGE = 1e-8
 """Of a state, in SI units; the parts are linear."""
@@ -50,7 +48,7 @@ def linear(system: System) -> Linear | None:
     if not boxes.parts:
         return None
     try:
-        alone = loaded(boxes, _TORQUE)
+        alone = loaded(boxes)
         return Linear(*linear_network(alone.with_values(loaded_start(alone)[0])), open=with_load)
     except HerringboneError:
         return None

@@ -11,8 +11,9 @@ from herringbone.result.verification import Verification
 from herringbone.running.coupled import Coupled
 from herringbone.running.steps.tried_run import TriedRun
 
-_RUNS, _FAILURES = 20, 2
-"""Runs in all; runs in which a part or the coupling fails, for whatever reason."""
+_RUNS, _FAILURES, _REFUSALS = 20, 2, 12
+"""Runs in all; runs in which a part or the coupling fails beside one that ended well, or twice at
+the same time; runs that fail as long as none ended well: down to 1/2000 of the first step."""
 _AT_ONCE = 4
 """A step is divided by this whole number at the most, so that the next run has all its points."""
 _FEW, _CLOSEST = (1, 2, 4), Fraction(3, 2)
@@ -48,14 +49,14 @@ class Search:
 
     Attributes:
         tried: runs that ended well.
-        failed: steps of others [s].
+        failed: steps of others [s], and how they ended.
         why: the search is over; "" while it is not.
     """
 
     def __init__(self, tolerance: float, *, wished: bool) -> None:
         self._tolerance, self._wished = tolerance, wished
         self.tried: list[TriedRun] = []
-        self.failed: list[float] = []
+        self.failed: list[tuple[float, Outcome]] = []
         self.why = ""
         self._seconds, self._steps = 0.0, 1
 
@@ -64,10 +65,10 @@ class Search:
         outcome = found.result.outcome
         self._steps = round(found.result.info.t_end / found.recording.step)
         self._seconds += found.recording.wall_seconds
-        if outcome.completed:
+        if outcome.ended_well:
             self.tried.append(self._judged(found))
         else:
-            self.failed.append(found.recording.step)
+            self.failed.append((found.recording.step, outcome))
         self.why = self._over(outcome, found)
 
     def pieces(self) -> Fraction:
@@ -120,16 +121,24 @@ class Search:
         powers = [t.power for t in self.tried[2:]]
         flat = len(powers) >= patience and all(p < _FALLS for p in powers[-patience:])
         flat = flat or (len(powers) >= _LONG and fmean(powers[-_LONG:]) < _FALLS)
-        lost = not outcome.completed and not outcome.unstable and len(self.failed) >= _FAILURES
+        lost = not outcome.ended_well and not outcome.unstable and self._failed_for_good()
         reasons = {
             "the run with a shorter step was interrupted": outcome.kind is OutcomeKind.INTERRUPTED,
             outcome.message: lost,
-            "met": outcome.completed and self.tried[-1].error <= self._tolerance,
+            "met": outcome.ended_well and self.tried[-1].error <= self._tolerance,
             "the differences do not fall with the step, as with noise or jumps": flat,
             f"{_RUNS} runs were made": len(self.tried) + len(self.failed) >= _RUNS,
         }
         why = next((reason for reason, holds in reasons.items() if holds), "")
         return why or self._too_dear(found)
+
+    def _failed_for_good(self) -> bool:
+        """No shorter step helps: the last one failed where that before did, or others do not."""
+        if self.tried or len(self.failed) < _FAILURES:
+            return len(self.failed) >= _FAILURES
+        (step, before), (_, last) = self.failed[-2:]
+        alike = last.time > 0.0 and abs(last.time - before.time) <= step
+        return alike or len(self.failed) >= _REFUSALS
 
     def _too_dear(self, found: Coupled) -> str:
         """Why the step that is needed is not begun; "" if it is."""
@@ -170,6 +179,14 @@ class Search:
         step = self.tried[-2].step
         return Verification(groups, found.worst, worst, step, "by longer steps", asked)
 
+    def _longer_failed(self) -> str:
+        """The shortest step that failed, of those longer than that of the first good run."""
+        longer = [failed for failed in self.failed if failed[0] > self.tried[0].step]
+        if not longer:
+            return ""
+        step, outcome = min(longer, key=lambda failed: failed[0])
+        return f"{step:g} s is not stable" if outcome.unstable else f"{step:g} s fails"
+
     def _limit(self) -> str:
         """What kept the search from the tolerance, if anything did."""
         last = self.tried[-1]
@@ -177,12 +194,12 @@ class Search:
             return f"; its error is not known: {self.why}"
         if last.error > self._tolerance:
             return f"; not met: {self.why}"
-        unstable = f"{max(self.failed):g} s is not stable" if self.failed else ""
+        longer = self._longer_failed()
         if len(self.tried) > 2:
             if last.error > _FAR_BELOW * self._tolerance:
                 return ""
             before = self.tried[-2]
-            also = f", and {unstable}" if unstable else ""
+            also = f", and {longer}" if longer else ""
             return f"; with {before.step:g} s it was not seen to be met: {before.error:.2g}{also}"
-        longer = unstable or "no longer one is tried"
-        return f"; a step longer than {self.tried[0].step:g} s is of no use here: {longer}"
+        why = longer or "no longer one is tried"
+        return f"; a step longer than {self.tried[0].step:g} s is of no use here: {why}"

@@ -10,7 +10,9 @@ more, or while the run before was far from its own predecessor, as 1 where two r
 no other is known: long steps pretend more. Each group of channels has its own: one that errs little
 with long steps can err most at last.
 The first step is a 47th of the run, or five times li's own where parts of this project take part:
-47 is prime, so that signals with a whole number of periods in the run do not look constant.
+47 is prime, so that signals with a whole number of periods in the run do not look constant. Where
+that run fails, others follow until one ends well: of ever shorter steps, or, beside a part that
+takes steps of one length only, of usual ones; the one that it proposes is tried first.
 """
 
 from collections.abc import Callable
@@ -23,6 +25,7 @@ from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
 from herringbone.result.result import Result
 from herringbone.running.coupled import Coupled, coupled
 from herringbone.running.coupling_choice import Asked
+from herringbone.running.foreign.started import USUAL_STEPS, proposed_step, takes_one_step
 from herringbone.running.loading import in_one_run
 from herringbone.running.operating.lean import with_row
 from herringbone.running.reporting.progress import Progress
@@ -88,7 +91,8 @@ def searched(
     """
     search = Search(tolerance, wished=asked.tolerance is not None)
     stable = {} if asked.tolerance is None else stable_inner_steps(system)
-    step = first = asked.step or first_step(system, scene)
+    first, *others = [asked.step] if asked.step else first_steps(system, scene)
+    step = first
     wanted = replace(asked, tolerance=None, warn=False, all_points=True, judge=False)
     while not search.why:
         try:
@@ -99,15 +103,28 @@ def searched(
                 raise
             search.why = f"with steps of {step:.3g} s: {error}"
             break
-        wanted = replace(wanted, algorithm=found.algorithm)  # one for all runs, to be compared
         search.take(found)
+        if search.tried:
+            wanted = replace(wanted, algorithm=found.algorithm)  # one for all, to be compared
+        elif others:
+            step = others.pop(0)
+            continue
         step = found.recording.step / float(search.pieces())
     found = search.told() if search.tried else found
     return found._replace(result=with_row(judged(found.result, system, None), asked.left_out))
 
 
-def first_step(system: System, scene: Scene) -> float:
-    """The longest step that is tried [s]."""
+def first_steps(system: System, scene: Scene) -> list[float]:
+    """Steps that are tried first, in this order, until one does [s]; the longest, if all may do."""
+    fmus = [part.fmu for part in system.parts if part.foreign and part.fmu]
+    single = [fmu for fmu in fmus if takes_one_step(fmu)]
+    proposed = [step for fmu in single if (step := proposed_step(fmu))]
+    usual = USUAL_STEPS if single else ()
+    steps = (*proposed, _longest_step(system, scene), *usual)
+    return [step for step in dict.fromkeys(steps) if step <= scene.t_end]
+
+
+def _longest_step(system: System, scene: Scene) -> float:
     own = len(system.foreign_parts) < len(system.parts)
     longest = scene.t_end / _PIECES
     return min(longest, _COARSE * LI().default_step) if own else longest

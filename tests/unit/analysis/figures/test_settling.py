@@ -93,7 +93,7 @@ def test_an_angle_without_unit_is_judged_by_its_rate(ripple):
 def test_growth_of_a_known_unit_is_no_rotation():
     """A temperature that rises evenly: 5 K in a quarter over 5 / sqrt(12) K of rms."""
     (line,) = unsettled(turning(0.0, unit="K"))
-    assert f"changes by {100.0 * np.sqrt(12.0):.0f} %" in line
+    assert f"outputs in K change by {100.0 * np.sqrt(12.0):.0f} %" in line
 
 
 def test_a_speed_that_is_not_steady_is_told():

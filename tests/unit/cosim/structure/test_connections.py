@@ -34,6 +34,12 @@ def test_unknown_port_names_those_that_exist():
     assert "it has the ports a, b" in said and "'spring.left'" in said
 
 
+def test_a_part_without_ports_names_its_variables():
+    part = FakePart("p").real("u", "input").real("y", "output").real("k", "parameter")
+    said = refused("no variable or port 'left'", [mass("m"), part], ("p.left", "m.flange"))
+    assert "it has no ports, and the inputs and outputs u, y; join one of these" in said
+
+
 def test_path_without_port():
     refused(
         "connection 'm': it must be PART.PORT or PART.VARIABLE",
@@ -134,7 +140,7 @@ def test_types_that_lose_nothing_can_be_connected(output, input_, fit):
         assert len(found.others) == 1
         assert not found.connections
     else:
-        said = f"'p.y' -> 'q.u': a {output} does not fit into a {input_} without loss"
+        said = f"'p.y' -> 'q.u': {output} does not fit into {input_} without loss"
         refused(said, parts, ("p.y", "q.u"))
 
 

@@ -1,5 +1,7 @@
 """How a system's parts follow from its connections: bodies, elements, orders, loops."""
 
+from dataclasses import replace
+
 import pytest
 from support.parts.fakes import FakePart
 from support.parts.networks import mass, network, passing, refused, spring
@@ -108,6 +110,19 @@ def test_undeclared_dependencies_count_as_an_element():
     found = network(parts, ("s.y", "p.u"), ("p.y", "q.u"))
     assert 0 in found.elements
     assert "p declares no output dependencies; taken as an element" in found.notes
+
+
+def test_a_mass_that_declares_no_dependencies_is_a_body():
+    """It takes a force and gives the motion of that port, also where no circle shows it."""
+    part = mass("p")
+    for name, v in part.variables.items():
+        if v.causality == "output":
+            part.variables[name] = replace(v, dependencies=None)
+    source = FakePart("s").real("y", "output", "N")
+    ends = ("s.y", "p.flange.f"), ("p.flange.s", "q.u")
+    found = network([part, source, passing("q", "m")], *ends)
+    assert (found.elements, found.bodies) == ((2,), (0,))
+    assert "p declares no output dependencies; taken as a body" in found.notes
 
 
 def test_undeclared_dependencies_in_a_circle_make_a_body():

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import herringbone as hb
 from herringbone.analysis.flange.hosted_flange import Host
 from herringbone.commands import main as cli
 from herringbone.cosim.fmu.opening import many_of
@@ -64,6 +65,16 @@ def test_shaft_outside(kinds, parallel, share):
     assert limit == pytest.approx(share * HOST.damping / HOST.stiffness, rel=0.01)
     assert growth_at_host(file, HOST, (1.0 - WITHIN) * limit, parallel=parallel) < 0.0
     assert growth_at_host(file, HOST, (1.0 + WITHIN) * limit, parallel=parallel) > 0.0
+
+
+def test_scripts_get_what_the_command_shows(kinds, capsys):
+    file = kinds / "oscillator_mass.fmu"
+    given = {"inertia": HOST.inertia, "stiffness": HOST.stiffness, "damping": HOST.damping}
+    found = hb.flange_stability(file, flange=MASS, **given)
+    options = [text for name, value in given.items() for text in (f"--{name}", str(value))]
+    assert cli.main(["stability", str(file), "--flange", MASS, *options]) == 0
+    assert capsys.readouterr().out.strip() == str(found)
+    assert found.limits == hosted_flange(file, MASS, HOST).limits
 
 
 def test_shaft_inside(kinds):

@@ -118,8 +118,8 @@ def test_map_is_affine():
     """Differences twenty times larger give the same matrix, in units of the differences."""
     amplification = Amplification(*linear_network(rig()), Jacobi(2))
     small = amplification.matrix(2e-5)
-    scale = amplification._z_changes[amplification._used]
-    amplification._changes = 20.0 * amplification._changes
+    scale = amplification._steps.z_changes[amplification._used]
+    amplification._steps.changes = 20.0 * amplification._steps.changes
     deviation = (amplification.matrix(2e-5) - small) * scale[None, :] / scale[:, None]
     assert np.abs(deviation).max() < 1e-7
 
@@ -172,8 +172,8 @@ def test_columns_of_one_call_are_those_of_runs(monkeypatch, algorithm):
     """To rounding: an iterated algorithm keeps its scale from run to run."""
     amplification = Amplification(*linear_network(atlas.two_rotors(0.02, 3.0)), algorithm)
     found = amplification.matrix(1e-4)
-    run_from = type(amplification._laid_out).run_from
-    monkeypatch.setattr(type(amplification._laid_out), "run_from", PreparedRun.run_from)
+    run_from = type(amplification._steps._laid_out).run_from
+    monkeypatch.setattr(type(amplification._steps._laid_out), "run_from", PreparedRun.run_from)
     assert found.size > 0
     assert amplification.matrix(1e-4) == pytest.approx(found, rel=1e-12, abs=1e-14)
     assert run_from is not PreparedRun.run_from

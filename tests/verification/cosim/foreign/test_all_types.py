@@ -196,14 +196,25 @@ def test_adaptive_step_exchanges_at_its_own_points(all_types):
 @pytest.mark.parametrize(
     ("connection", "said"),
     [
-        (("a.Int64_out", "b.Int32_in"), "a Int64 does not fit into a Int32 without loss"),
-        (("a.y", "b.pair"), "'a.y[1]' -> 'b.pair[1]': a Float64 does not fit into a Int32"),
+        (("a.Int64_out", "b.Int32_in"), "Int64 does not fit into Int32 without loss"),
+        (("a.y", "b.pair"), "'a.y[1]' -> 'b.pair[1]': Float64 does not fit into Int32"),
         (("a.turned", "b.u"), "'a.turned' has 4 elements and 'b.u' has 2 elements"),
-        (("a.Boolean_out", "b.Int8_in"), "a Boolean does not fit into a Int8 without loss"),
+        (("a.Boolean_out", "b.Int8_in"), "Boolean does not fit into Int8 without loss"),
     ],
 )
 def test_what_does_not_fit_is_refused(all_types, connection, said):
     refused(said, two(all_types["plain"], connection), {})
+
+
+@pytest.mark.parametrize(
+    ("connection", "given"),
+    [(("a.Int8_out", "b.Int8_in"), {"b.Int8_in": 3}), (("a.y", "b.u"), {"b.u": [1.0, 2.0]})],
+)
+def test_a_start_value_of_a_connected_input_is_told(all_types, connection, given):
+    result = run(two(all_types["plain"], connection), given, t_end=0.2)
+    (name,) = given
+    said = f"b: the start value of {name.removeprefix('b.')} has no effect"
+    assert any(note.startswith(said) for note in result.info.notes)
 
 
 def test_types_of_fmi2(selector):

@@ -50,16 +50,18 @@ def same(one, other):
         assert one.data[name].tolist() == other.data[name].tolist(), name
 
 
+@pytest.mark.parametrize("end", [0.75, 0.73])
 @pytest.mark.parametrize("abilities", ["", EVENTS])
-def test_all_types(tmp_path, abilities):
-    """Arrays of a size that is set, all types connected, events inside of steps, and an end."""
+def test_all_types(tmp_path, abilities, end):
+    """Arrays of a size that is set, all types connected, events inside of steps, and an end, at a
+    communication point or within a step."""
     file = build_all_types(tmp_path, abilities)
     parts = tuple(PartSpec(name, fmu=file) for name in "ab")
     joined = [(f"a.{kind}_out", f"b.{kind}_in") for kind in KINDS if kind != "Float32"]
     joined += [("a.y[1]", "b.u[2]"), ("a.swapped", "b.pair")]
     system = System("two", "", parts, tuple(joined))
     values = {"a.n": 4, "b.n": 3, "a.u": [1, 2, 3, 4], "a.String_in": "a", "a.Binary_in": "00ff"}
-    values |= {"a.every": 0.1625 if abilities else 0.0, "a.Float32_in": 0.1, "b.end": 0.75}
+    values |= {"a.every": 0.1625 if abilities else 0.0, "a.Float32_in": 0.1, "b.end": end}
     found = [
         hb.run(
             system, values=values, step=0.05, t_end=1.0, record_step=0.1,
@@ -70,3 +72,4 @@ def test_all_types(tmp_path, abilities):
     same(*found)
     assert found[0].data["b.String_out"].iloc[-1] == "a"
     assert found[0].outcome.kind is hb.OutcomeKind.ENDED
+    assert found[0].outcome.time == pytest.approx(end, rel=1e-12)

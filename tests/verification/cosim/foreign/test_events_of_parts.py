@@ -19,7 +19,8 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="written for POSIX")
 @pytest.mark.parametrize("name", ["plain", "events"])
 @pytest.mark.parametrize("end", [0.5, 0.45])
 def test_part_that_ends_the_simulation(all_types, name, end):
-    """Alone it is recorded where it ends; its last step is the last."""
+    """Alone it is recorded where it ends; its last step is the last. Without event mode it may not
+    return early, and tells by its last time alone where it is."""
     result = run(alone(all_types[name]), {"end": end, "u": [1.0, 0.0]})
     assert result.outcome.kind is OutcomeKind.ENDED
     assert result.outcome.message == f"p ended the simulation at {end:g} s"
@@ -55,6 +56,15 @@ def test_events_that_never_settle(all_types):
 def test_events_inside_a_step_do_not_change_what_is_integrated(all_types):
     """13 events in steps of 0.1 s: early returns and the rests of the steps make whole steps."""
     result = run(alone(all_types["events"]), {"every": 0.073, "u": [1.0, 2.0]})
+    assert result.data["p.events"].iloc[-1] == 13
+    assert result.data["p.y[2]"].iloc[-1] == pytest.approx(2.0, rel=1e-12)
+
+
+def test_an_event_whose_time_is_told_before_is_met(all_types):
+    """FMI 3.0, nextEventTime: it counts events that begin at their times alone, of which 12 lie
+    inside of a step; by itself it stops for none."""
+    values = {"every": 0.073, "told": 1.0, "u": [1.0, 2.0]}
+    result = run(alone(all_types["events"]), values)
     assert result.data["p.events"].iloc[-1] == 13
     assert result.data["p.y[2]"].iloc[-1] == pytest.approx(2.0, rel=1e-12)
 

@@ -70,6 +70,12 @@ def test_order_of_the_coupling(tmp_path, abilities):
     assert math.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.1)
 
 
+def test_who_declares_to_ask_within_a_step_and_never_does_is_told(tmp_path):
+    run = turned(drivetrain(tmp_path, 3, WITHIN, asks=False), STEP, NEVER)
+    said = "says: it declares intermediate update, and asked for no input in"
+    assert sum(said in note for note in run.info.notes) == 2
+
+
 @pytest.mark.parametrize("saves", [True, False], ids=["restores", "plain"])
 def test_a_housing_moves_as_the_same_one_of_fmi2(tmp_path, saves):
     """On the rig, by the default algorithm."""

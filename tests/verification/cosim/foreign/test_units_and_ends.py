@@ -95,7 +95,8 @@ def system(folder, first, second):
 def run(folder, sizes, **options):
     values = {f"one.{name}": value for name, value in sizes.items()}
     values |= {"one.inertia": 0.1, "two.inertia": 0.3, "one.start": 100.0, "two.start": 90.0}
-    return hb.run(folder, values=values, start="rest", t_end=0.02, step=1e-4, **options)
+    given = {"t_end": 0.02, "step": 1e-4, **options}
+    return hb.run(folder, values=values, start="rest", **given)
 
 
 @pytest.mark.parametrize("algorithm", ["jacobi:order=1", "li", None])
@@ -142,6 +143,14 @@ def test_wrapped_angle_is_noticed(tmp_path, mass, unit):
         notes = [note for note in result.info.notes if "wraps its angle" in note]
         assert len(notes) == wrap
     assert notes[0].startswith("one.flange.phi jumps by a turn at 0.063 s: ")
+    assert notes[0].endswith("; nothing is connected to it")
+
+
+def test_what_a_wrapped_angle_does_to_others(tmp_path, mass):
+    file, _ = mass(*named("N.m", "rad", "rad/s"))
+    result = run(system(tmp_path / "s", file, file), {"wrap": 1.0}, t_end=0.1)
+    (note,) = (note for note in result.info.notes if "wraps its angle" in note)
+    assert "what is connected to it is twisted by 2 pi" in note
 
 
 @pytest.mark.parametrize("end", [0.05, 0.0525])
@@ -161,3 +170,13 @@ def test_fmi2_part_that_ends_the_simulation(tmp_path, mass, end):
         f"the part came to {end:g} s; if it discarded the step, a smaller one"
         in found.outcome.message
     )
+
+
+@pytest.mark.parametrize("options", [{"step": None, "tolerance": 1e-3}, {"step": 1e-4}])
+def test_the_error_of_a_run_that_a_part_ends_is_told(tmp_path, mass, options):
+    """As of one that completes, up to there; a tolerance is met."""
+    file, _ = mass(*named("N.m", "rad", "rad/s"))
+    result = run(system(tmp_path / "s", file, file), {"end": 0.015}, **options)
+    assert result.outcome.kind is OutcomeKind.ENDED
+    assert result.outcome.time == pytest.approx(0.015, rel=1e-9)
+    assert 0.0 < result.verification.error <= 1e-3

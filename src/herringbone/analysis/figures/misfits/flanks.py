@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 from herringbone.analysis.asked import mesh_forces, parameter
 from herringbone.core.declaring.roles import PortKind, Quantity
-from herringbone.core.wording import setting
+from herringbone.core.wording import settings
 from herringbone.result.result import TIME, Result
 
 _NAMES = {1.0: "drive", -1.0: "coast"}
@@ -46,7 +46,7 @@ def of_flank(result: Result, gear: str) -> Iterator[str]:
 def _remedy(result: Result, parts: Iterable[str], flank: float) -> str:
     """How a pair and its bearings are told which flank carries."""
     columns = (result.info.anatomy.column(part, Quantity.CARRYING_FLANK) for part in parts)
-    given = " ".join(setting(column, flank) for column in columns if column)
+    given = settings({column: flank for column in columns if column})
     return f"; it carries most of the time: {given} takes its line of action"
 
 

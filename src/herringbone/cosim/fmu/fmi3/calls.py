@@ -88,7 +88,7 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
 def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
     """fmi2GetFMUstate."""
     part = carray(memory, 1)[0]
-    part.saved = part.ended
+    part.saved, part.saved_event = part.ended, part.next_event
     return of_state(part.get_state, (part.instance, handle))
 
 
@@ -98,7 +98,7 @@ def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
     whole = carray(memory, 1)
     part = whole[0]
     status = of_state(part.set_state, (part.instance, state))
-    part.ended, part.bent = part.saved, 0
+    part.ended, part.next_event, part.bent = part.saved, part.saved_event, 0
     if status == OK and part.array_count > 0:
         arrays = carray(at_address(part.arrays), part.array_count, np.uint32)
         return _update(whole, arrays, part.array_count)

@@ -22,6 +22,9 @@ MEMORY = np.dtype(
         ("calls", np.int64),
         ("ended", np.int64),
         ("saved", np.int64),
+        ("next_event", np.float64),
+        ("saved_event", np.float64),
+        ("varies", np.int64),
         ("reached", np.int64),
         ("events", np.int64),
         ("enter_events", np.int64),
@@ -48,6 +51,9 @@ MEMORY = np.dtype(
                                   (uint32), and number
     calls                         number of calls
     ended, saved                  why no step follows, see `ENDED`; that of the state saved last
+    next_event, saved_event       when the FMU has an event, as it tells before [s], infinite if it
+                                  does not; that of the state saved last
+    varies                        1 if it takes steps of any length
     reached                       address of the time that the last step reached (float64)
     events                        1 in step mode if event mode is used
     enter_events, update, enter_steps

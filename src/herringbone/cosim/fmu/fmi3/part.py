@@ -100,6 +100,8 @@ class Fmu3Part(FmuPart):
         arrays = {e.first for e in elements if e.size > 1 and e.variable.causality == "input"}
         self._arrays = np.array(sorted(arrays), np.uint32)
         self._memory[...] = np.zeros(1, memory.MEMORY)  # its address stays: the FMU may know it
+        self._memory["next_event"] = np.inf
+        self._memory["varies"] = not self.one_step
         self._memory["count"] = count
         self._memory["elements"] = self._elements.ctypes.data
         self._memory["values"] = self._values.ctypes.data
@@ -217,7 +219,8 @@ class Fmu3Part(FmuPart):
     def _settle(self) -> None:
         """From event mode to step mode."""
         for _ in range(_MOST_EVENTS):
-            more, ends, *_ = self.slave.updateDiscreteStates()
+            more, ends, _, _, defined, time = self.slave.updateDiscreteStates()
+            self._memory["next_event"] = time if defined else np.inf
             if ends:
                 self._memory["ended"] = memory.ENDED
             if ends or not more:

@@ -1,7 +1,8 @@
 """Steps and events of an FMU 3.0 behind an FMI 2.0 function, at C addresses; see `calls`.
 
-An FMU with event mode stops for an event, at the end of a step or by an early return. The event is
-handled here, and the rest of the step follows.
+An FMU with event mode stops for an event, at the end of a step or by an early return, or tells its
+time before (FMI 3.0, nextEventTime: the master steps up to it, or slightly further where steps have
+one length). The event is handled here, and the rest of the step follows.
 """
 
 import numpy as np
@@ -22,6 +23,8 @@ _EVENT, _TERMINATE, _EARLY = 256, 512, 1024  # added to the status of a step
 _MOST_EVENTS = 1000
 """In a step, and iterations of one."""
 _ERROR = 3
+_NEAR = 1e-9
+"""Of a step: so near its ends an event that was told before lies at them."""
 _INT32, _DOUBLE, _BOOLEAN = ir.IntType(32), ir.DoubleType(), ir.IntType(8)
 
 
@@ -81,6 +84,8 @@ def leave_events(memory: np.ndarray) -> int:
         status = _update_states(part.update, (part.instance, f, f + 1, f + 2, f + 3, f + 4, f + 8))
         if status > LAST_GOOD:
             return status
+        told = carray(at_address(f + 8), 1, np.float64)
+        part.next_event = told[0] if flag[4] else np.inf
         if flag[1]:
             part.ended = ENDED
         if flag[0] == 0 or flag[1]:
@@ -107,22 +112,30 @@ def _advance(memory: np.ndarray, time: float, step: float, no_set_before: int) -
     """One fmi3DoStep, and the event at its end: FMI status, and whether time is left."""
     part = memory[0]
     last = carray(at_address(part.reached), 1, np.float64)
-    end = time + step
-    found = _step(part.do_step, part.instance, time, step, no_set_before, part.reached)
-    status, early = found % _EVENT, found >= _EARLY and last[0] < end
-    if not early:
-        last[0] = end
+    end, length = time + step, step
+    awaited = part.next_event - time
+    if part.events and part.varies and _NEAR * step < awaited < (1.0 - _NEAR) * step:
+        length = awaited
+    last[0] = end
+    found = _step(part.do_step, part.instance, time, length, no_set_before, part.reached)
+    status, ends = found % _EVENT, found % _EARLY >= _TERMINATE
+    early = found >= _EARLY and last[0] < time + length
+    if not early and not (ends and time < last[0] < end - _NEAR * step):
+        last[0] = end if length == step else part.next_event
+    left = last[0] < end
     if status > LAST_GOOD:
         return status, False
-    if found % _EARLY >= _TERMINATE:
+    if ends:
         part.ended = ENDED
-    elif part.events and (early or found % _TERMINATE >= _EVENT):
+    elif part.events and (
+        early or found % _TERMINATE >= _EVENT or part.next_event - last[0] <= _NEAR * step
+    ):
         status = enter_events(memory)
         if status <= LAST_GOOD:
             status = leave_events(memory)
     elif early:
         part.ended = EARLY
-    return status, early
+    return status, left
 
 
 @c_function(_STEP)

@@ -1,0 +1,47 @@
+"""A tolerance where parts refuse steps: the run ends as one with a step that they take does."""
+
+import numpy as np
+import pytest
+from support.foreign.drivetrain import VALUES, drivetrain, exact
+
+import herringbone as hb
+
+T_END = 0.02
+
+
+def searched(system, **options):
+    values = VALUES | {"motor.from": 1.0, "load.from": 1.0}
+    return hb.run(system, values=values, start="rest", t_end=T_END, **options)
+
+
+def speed_error(result) -> float:
+    """Of the motor's speed, over its alternating part; its own torque never comes."""
+    told, true = result["motor.w"].to_numpy(), exact(result["time"].to_numpy(), 1.0)[:, 1]
+    return float(np.linalg.norm(told - true) / np.linalg.norm(true - true.mean()))
+
+
+def test_shorter_steps_are_tried_until_parts_take_them(tmp_path):
+    """The first two, of T_END/47 and of half of that, are refused; the third is not."""
+    system = drivetrain(tmp_path, 2, steps="1.5e-4 0.0")
+    result = searched(system, tolerance=1e-3)
+    assert result.outcome.completed and not result.outcome.message
+    assert result.info.communication_step <= T_END / 47 / 4
+    assert result.verification.error <= 1e-3
+    assert speed_error(result) <= 2e-3
+
+
+@pytest.mark.parametrize("options", [{}, {"tolerance": 1e-3}])
+def test_usual_steps_are_tried_where_parts_take_one_length_only(tmp_path, options):
+    """0.1 ms, which nothing proposes. Second order: 82 Hz, 122 steps in a period."""
+    result = searched(drivetrain(tmp_path, 2, steps="1e-4 1e-4"), **options)
+    assert result.outcome.completed
+    assert result.info.communication_step == pytest.approx(1e-4, rel=1e-6)
+    assert speed_error(result) < (2 * np.pi * 82 * 1e-4) ** 2
+    assert any("its error is not known: " in note for note in result.info.notes)
+
+
+def test_what_fails_with_every_step_ends_as_such(tmp_path):
+    """No step is taken, and the message holds the part."""
+    result = searched(drivetrain(tmp_path, 2, steps="1e-30 0.0"), tolerance=1e-3)
+    assert result.outcome.kind is hb.OutcomeKind.COUPLING_FAILED
+    assert "motor fails" in result.outcome.message or "load fails" in result.outcome.message
