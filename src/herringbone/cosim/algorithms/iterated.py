@@ -7,7 +7,7 @@ import numpy as np
 
 from herringbone.core.part import of_parts
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, solved_growth
-from herringbone.cosim.algorithms.dividing.divided import divide
+from herringbone.cosim.algorithms.dividing.divided import SMOOTH, divide
 from herringbone.cosim.algorithms.dividing.divisions import Divisions
 from herringbone.cosim.algorithms.jacobian import (
     PREDICTION,
@@ -247,7 +247,7 @@ class PreparedNodes(PreparedRun):
             )
             if status == JUMPED:
                 status, done, culprit = divide(self, chunk._replace(start=done, count=1))
-                status = REFRESH if status == DONE else status
+                status = {DONE: REFRESH, SMOOTH: DONE}.get(status, status)
             if status == REFRESH:
                 status = self._refresh(self._buffers, chunk._replace(start=done))
             if status != DONE or done >= end:
@@ -279,6 +279,11 @@ class PreparedNodes(PreparedRun):
         """See `InterfaceJacobian.measure`."""
         self.jacobians += 1
         return self.jacobian.measure(self.buffers, self.buffers.scale, t, h, known)
+
+    @property
+    def correction(self) -> np.ndarray:
+        """By which macro steps are corrected now, see `correction_matrix`."""
+        return self._correction
 
     def look_again(self) -> None:
         """What passes directly through foreign parts may have changed; see `NodalPart`."""

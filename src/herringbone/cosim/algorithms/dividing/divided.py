@@ -6,10 +6,15 @@ A half whose differences (see `loops.jumps`) have fallen as those of a smooth ou
 other one is halved again, until what the jump changes in it is nothing over the macro step. What
 follows has steps that get longer again, by which the prediction starts anew.
 
+A jump is at one place, in one of two halves. Where halves of a size are halved again at more than
+two places it is a motion that the step does not resolve: the rest of the step is taken whole, and
+differences of that size are usual from then on.
+
 An event whose time a part tells by early return is found in the same way: the part handles it
 inside of the step, and its outputs show it.
 """
 
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -35,10 +40,14 @@ _CORRECTIONS = 20
 _REST = 1e-8
 """Residual that corrections of pieces may leave: what they leave at an event is not made up for by
 shorter macro steps, so that no other run tells it."""
+_PLACES = 2
+"""Pieces of one length that are halved: at most so many jumps are looked for in a step."""
 _OCTAVES, _SHORT = 3, 8
 """A Jacobian serves steps down to 2^-3 of its own, and one of 2^-8 of a macro step all shorter."""
 _FIRST, _ONE_IN = 16, 4
 """Steps that are divided whatever happens; one in so many more."""
+SMOOTH = 100
+"""Status, beside those of the loops."""
 _LONG_AGO = 1e9
 """Macro steps since values that tell nothing."""
 _NEVER = 2**62
@@ -68,6 +77,8 @@ class _Piece:
 
 def divide(prepared: "PreparedNodes", chunk: Chunk) -> tuple[int, int, int]:
     """Take a macro step in pieces; status, macro steps done, and who failed, as `run_iterated`.
+
+    The status is SMOOTH after a step without jumps, whose Jacobian is as good as before.
 
     Args:
         prepared: the run, at the start of a step that has just been taken back.
@@ -106,12 +117,15 @@ class _Dividing:
         first = jumps.found.copy()
         pieces = list(_Piece(0.0, 1.0, first).halves(first))
         jumps.learns[0] = 0
-        event = False
+        event, places = False, Counter[int]()
         while pieces:
             piece = pieces.pop()
             self._limit(piece)
             status, culprit = self._take(piece)
             if status == JUMPED:
+                places[piece.octave] += 1
+                if places[piece.octave] > _PLACES:
+                    return self._unresolved(first, piece.begin)
                 pieces += piece.halves(jumps.found.copy())
                 continue
             if status == PART_FAILED and run.buffers.counts[2] == DISCARDED:
@@ -186,6 +200,16 @@ class _Dividing:
         found = np.minimum(first, last) if event else first
         jumps.usual[:] = np.maximum(jumps.usual, found)
         jumps.learns[0], jumps.limit[:] = 1, SUDDEN * jumps.usual
+
+    def _unresolved(self, first: np.ndarray, begin: float) -> tuple[int, int, int]:
+        """The rest of a step that does not resolve a motion."""
+        divisions = self._run.divisions
+        divisions.steps, divisions.unresolved = divisions.steps - 1, divisions.unresolved + 1
+        self._learn(first, 1.0, event=False)
+        self._jumps = without(self._jumps)
+        self._correction, self._measured = self._run.correction, 0
+        status, done, culprit = self.rest(begin)
+        return (SMOOTH if status == DONE else status), done, culprit
 
     def _refused(self, begin: float) -> tuple[int, int, int]:
         """A part discards so short a step: this and all others are taken as they are."""

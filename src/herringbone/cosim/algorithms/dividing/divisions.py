@@ -18,12 +18,14 @@ class Divisions:
         steps, pieces: macro steps so far, and what they were taken in.
         left: steps that jump and were not divided, as too many did or a part refuses short ones.
         since: time of the first of these [s].
+        unresolved: steps in which it was no jump, but a motion faster than these.
     """
 
     steps: int = 0
     pieces: int = 0
     left: int = 0
     since: float = 0.0
+    unresolved: int = 0
 
     def notes(self) -> tuple[str, ...]:
         """Lines for the user."""
@@ -39,13 +41,20 @@ class Divisions:
                 "most steps have a jump or a part takes no shorter ones: the coupling is of first "
                 "order there"
             )
+        if self.unresolved:
+            found.append(
+                f"in {self.unresolved} macro steps outputs of foreign parts change faster than "
+                "these resolve, or jump at more than two places: they were not divided"
+            )
         return tuple(found)
 
     def saved(self) -> Arrays:
         """What is needed to go on, by name."""
-        return {_SAVED: np.array([self.steps, self.pieces, self.left, self.since])}
+        known = [self.steps, self.pieces, self.left, self.since, self.unresolved]
+        return {_SAVED: np.array(known)}
 
     def put(self, saved: Mapping[str, np.ndarray]) -> None:
         """Go on from there."""
-        self.steps, self.pieces, self.left = map(int, saved[_SAVED][:3])
-        self.since = float(saved[_SAVED][3])
+        steps, pieces, left, since, unresolved = saved[_SAVED]
+        self.steps, self.pieces, self.left = int(steps), int(pieces), int(left)
+        self.since, self.unresolved = float(since), int(unresolved)
