@@ -45,10 +45,6 @@ class Ending:
         if status == DONE:
             complete = self._done == run.grid.count
             return self._at_end() if complete else Outcome.interrupted(reached)
-        if status == REFUSED:
-            culprit = next(
-                p for p, part in enumerate(run.network.parts) if part.name == run.others.asked
-            )
         if (end := self._asked_for(status, culprit)) is not None:
             late = reached - run.grid.step < end.time  # a cell tells of a step with the next one
             time = end.time if late else reached
@@ -82,8 +78,11 @@ class Ending:
     def _asked_for(self, status: int, culprit: int) -> Outcome | None:
         """The end that a part asked for; None if none did."""
         every = self._run.network.parts
-        one = every[culprit : culprit + 1]
-        asked = {PART_FAILED: one, REFUSED: one, COUPLING_FAILED: every}
+        asked = {
+            PART_FAILED: every[culprit : culprit + 1],
+            REFUSED: [part for part in every if part.name == self._run.others.asked],
+            COUPLING_FAILED: every,
+        }
         for part in asked.get(status, ()):
             if (end := part.ended()) is not None:
                 message = f"{part.name} ended the simulation at {end:g} s"

@@ -157,9 +157,9 @@ class Run:
     def _recording(self, done: int, outcome: Outcome, wall: float, cpu: float) -> Recording:
         kept, record_step = self.rows.finish(done, outcome)
         rows = self.rows
-        parts = self.network.parts
-        taken = {f"{parts[c.source].name}.{c.output}" for c in self.network.connections}
-        notes = wrapped_angles(rows.names, rows.recorded, taken, kept.time, kept.values)
+        notes = wrapped_angles(
+            rows.names, rows.recorded, self.network.exchanged, kept.time, kept.values
+        )
         passes = zip((p.name for p in self.network.parts), self.prepared.passes(done), strict=True)
         return Recording(
             time=kept.time,

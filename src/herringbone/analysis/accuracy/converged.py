@@ -47,9 +47,7 @@ class Converged:
         with closing_all(open_parts()) as parts:
             network = build_network(system, parts)
             repeats = all(p.addresses.can_restore for p in parts)
-            names = list(
-                dict.fromkeys(f"{parts[c.source].name}.{c.output}" for c in network.connections)
-            )
+            names = list(network.exchanged)
         self._algorithm: Algorithm = LI(degree=4) if repeats else Jacobi(order=2)
         self.groups = in_groups(system.paths, names, system.channels) or {_ALL: names}
         most = max(grid.count for grid in grids)

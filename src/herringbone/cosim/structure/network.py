@@ -66,6 +66,12 @@ class Network:
         """Connections of all types."""
         return (*self.connections, *self.others)
 
+    @property
+    def exchanged(self) -> tuple[str, ...]:
+        """Outputs of doubles that other parts take, each once, as `part.output`."""
+        names = (f"{self.parts[c.source].name}.{c.output}" for c in self.connections)
+        return tuple(dict.fromkeys(names))
+
     def inputs(self, part: int) -> list[Connection]:
         """Connections of doubles that feed a part."""
         return [c for c in self.connections if c.target == part]

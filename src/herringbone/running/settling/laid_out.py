@@ -9,7 +9,6 @@ import numpy as np
 from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.components.in_process import InProcessPart
 from herringbone.core.part import Part
-from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.opening import runs_again
 from herringbone.cosim.signature import Kind
 from herringbone.cosim.structure.network import Network, build_network
@@ -17,6 +16,7 @@ from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.foreign.foreign_parts import as_it_moves, can_be_watched
 from herringbone.running.foreign.start_inputs import start_inputs
+from herringbone.running.foreign.started import takes_one_step
 from herringbone.running.foreign.trials import found_signature
 from herringbone.running.loading import instances
 from herringbone.running.settling.stranger import NoSettledStartError, Stranger
@@ -86,10 +86,9 @@ def _units(network: Network, part: Part) -> dict[str, str]:
 def _refuse_untriable(spec: PartSpec) -> None:
     """Raise NoSettledStartError of an FMU that allows no further instance, or no other steps."""
     file = Path(str(spec.fmu))
-    abilities = read_fmu(file).coSimulation
     if not runs_again(spec.name, file):
         raise NoSettledStartError(
             f"{spec.name} can be instantiated once only, and runs in this process"
         )
-    if not abilities.canHandleVariableCommunicationStepSize:
+    if takes_one_step(file):
         raise NoSettledStartError(f"{spec.name} takes steps of one length only")

@@ -85,11 +85,8 @@ def first_unstable_near(growth: GrowthOf, limit: float) -> float:
     while low > SMALLEST_STEP and _grows(safe_growth(growth, low)):
         low *= _NEAR
     samples = _along(growth, low, limit / _NEAR, beyond=False)
-    if _grows(samples[0][1]):
-        return low
-    for (before, _), (step, value) in pairwise(samples):
-        if _grows(value):
-            return _crossing(growth, before, step)
+    if _grows(samples[-1][1]):
+        return _crossing(growth, *map(_step, samples[-2:])) if len(samples) > 1 else low
     high = _find_unstable(growth, limit / _NEAR, _FINE)
     return np.inf if high is None else _crossing(growth, high / _FINE, high)
 
