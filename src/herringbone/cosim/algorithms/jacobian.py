@@ -6,6 +6,7 @@ from herringbone.core import HerringboneError
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
+from herringbone.cosim.layouts.reach import reach_of
 from herringbone.cosim.loops.node_jacobian import sensitivity
 from herringbone.cosim.structure.network import Network
 
@@ -37,6 +38,7 @@ class InterfaceJacobian:
         self, network: Network, layout: Layout, nodes: NodeLayout, outputs: list[list[str]]
     ) -> None:
         self.network, self.layout, self.nodes = network, layout, nodes
+        self._reach = reach_of(layout, nodes)
         self.owners = [(p, name) for p, names in enumerate(outputs) for name in names]
         units = [network.parts[p].variables[name].unit for p, name in self.owners]
         kinds = list(dict.fromkeys(units))
@@ -61,7 +63,7 @@ class InterfaceJacobian:
         jacobian, off = np.zeros((count, count)), np.zeros(len(self.owners))
         saved, room = buffers.history.copy(), (buffers.rest.copy(), buffers.nodes.copy())
         failed = sensitivity(
-            self.layout, self.nodes, buffers, jacobian, off, _CHANGE * size, *room,
+            self.layout, self.nodes, buffers, self._reach, jacobian, off, _CHANGE * size, *room,
             PREDICTION, t, h, known,
         )  # fmt: skip
         buffers.history[:] = saved

@@ -34,6 +34,14 @@ def save_part(layout: Layout, nodes: NodeLayout, buffers: Buffers, p: int) -> in
 
 
 @inlined
+def restore_part(layout: Layout, nodes: NodeLayout, buffers: Buffers, p: int) -> int:
+    """Restore the state of a part that can; FMI status."""
+    if nodes.get_state[p] == 0:
+        return 0
+    return state_call(nodes.set_state[p], layout.component[p], buffers.states[p])
+
+
+@inlined
 def save(layout: Layout, nodes: NodeLayout, buffers: Buffers) -> int:
     """Save the state of all parts that can; -1, or the part that refused."""
     for group in (nodes.bodies, nodes.elements, nodes.sources):
@@ -50,10 +58,9 @@ def restore(layout: Layout, nodes: NodeLayout, buffers: Buffers, sources: bool) 
     for group in (nodes.bodies, nodes.elements, nodes.sources):
         for p in group:
             is_source = layout.input_first[p] == layout.input_first[p + 1]
-            if nodes.get_state[p] == 0 or (is_source and not sources):
+            if is_source and not sources:
                 continue
-            status = state_call(nodes.set_state[p], layout.component[p], buffers.states[p])
-            if status > LAST_GOOD:
+            if restore_part(layout, nodes, buffers, p) > LAST_GOOD:
                 return p
     return -1
 
@@ -122,7 +129,7 @@ def get_to_nodes(layout: Layout, nodes: NodeLayout, buffers: Buffers, p: int, h:
 
 
 @inlined
-def _step_group(
+def step_group(
     layout: Layout, nodes: NodeLayout, buffers: Buffers, group: np.ndarray, t: float, h: float
 ) -> int:
     """Set, step and get a group of parts that do not see each other; -1, or who failed."""
@@ -144,22 +151,34 @@ def _step_group(
 
 
 @inlined
-def one_pass(layout: Layout, nodes: NodeLayout, buffers: Buffers, t: float, h: float) -> int:
-    """Step bodies and elements on the trial values; writes the residual. -1, or who failed."""
+def put_trial(nodes: NodeLayout, buffers: Buffers) -> None:
+    """The trial values become those at the nodes."""
     for k in range(nodes.degree):
         for i in range(nodes.unknown.size):
             buffers.nodes[k + 1, nodes.unknown[i]] = buffers.trial[k, i]
-    failed = _step_group(layout, nodes, buffers, nodes.bodies, t, h)
-    if failed >= 0:
-        return failed
-    for e in range(nodes.elements.size):
-        failed = _step_group(layout, nodes, buffers, nodes.elements[e : e + 1], t, h)
-        if failed >= 0:
-            return failed
+
+
+@inlined
+def write_residual(nodes: NodeLayout, buffers: Buffers) -> None:
+    """What the parts gave at the nodes, less the trial values."""
     for k in range(nodes.degree):
         for i in range(nodes.unknown.size):
             found = buffers.nodes[k + 1, nodes.unknown[i]]
             buffers.rest[k, i] = found - buffers.trial[k, i]
+
+
+@inlined
+def one_pass(layout: Layout, nodes: NodeLayout, buffers: Buffers, t: float, h: float) -> int:
+    """Step bodies and elements on the trial values; writes the residual. -1, or who failed."""
+    put_trial(nodes, buffers)
+    failed = step_group(layout, nodes, buffers, nodes.bodies, t, h)
+    if failed >= 0:
+        return failed
+    for e in range(nodes.elements.size):
+        failed = step_group(layout, nodes, buffers, nodes.elements[e : e + 1], t, h)
+        if failed >= 0:
+            return failed
+    write_residual(nodes, buffers)
     return -1
 
 
@@ -239,7 +258,7 @@ def begin(
                 for node in range(1, nodes.degree + 1):
                     buffers.nodes[node, i] = buffers.nodes[0, i]
             continue
-        failed = _step_group(layout, nodes, buffers, nodes.sources[s : s + 1], t, h)
+        failed = step_group(layout, nodes, buffers, nodes.sources[s : s + 1], t, h)
         if failed >= 0:
             return failed
     _settle(nodes, buffers)
