@@ -9,6 +9,7 @@ from herringbone.cosim.algorithms.adaptive_figures import (
     longest_steps,
     step_statistics,
 )
+from herringbone.cosim.algorithms.aimed import Aimed
 from herringbone.cosim.algorithms.iterated import SMALLEST, PreparedNodes
 from herringbone.cosim.algorithms.jacobian import PREDICTION, CouplingError, StepRefusedError
 from herringbone.cosim.algorithms.prepared import PreparedRun
@@ -107,7 +108,7 @@ class PreparedAdaptive(PreparedNodes):
         self._adaptive: Adaptive | None = None
         self._record = GrowingRecord(0)
         self._tick, self._every = 0.0, 0
-        self._kept, self._missing = tolerance, ""
+        self._aimed = Aimed(tolerance)
         self.inner: InnerStepping = NO_INNER
         self.channels: Mapping[str, Sequence[str]] = {}
 
@@ -151,6 +152,11 @@ class PreparedAdaptive(PreparedNodes):
         return error_estimate(self._adaptive, self.tolerance) if self._adaptive else None
 
     @property
+    def culprit(self) -> str:  # type: ignore[override]  # it depends on the run
+        """The unknown that missed what is aimed at, if one did."""
+        return self._aimed.culprit
+
+    @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
         """Downgrades; and steps that could not be made small enough, or as long as it would do."""
         if self._adaptive is None:
@@ -159,14 +165,7 @@ class PreparedAdaptive(PreparedNodes):
         if not missed:
             line = longest_steps(self._adaptive, self._tick, self._every, self.tolerance)
             return (*self._downgrades, *filter(None, (line,)))
-        if self._missing:
-            rest = f"{self._kept:.2g} was aimed at from there on; {missed} steps in all missed it"
-            return (*self._downgrades, f"{self._missing}; {rest}")
-        return (
-            *self._downgrades,
-            f"{missed} of the smallest steps ({self._tick * RUNGS[0]:.3g} s) missed the tolerance: "
-            "the forces jump there, or start from nothing",
-        )
+        return (*self._downgrades, self._aimed.line(missed, self._tick))
 
     def _make_adaptive(self, buffers: Buffers) -> Adaptive:
         nodes = self.nodes
@@ -216,13 +215,7 @@ class PreparedAdaptive(PreparedNodes):
         found = super().saved() | arrays_of("adaptive", self._adaptive)
         found |= arrays_of("inner", self._adaptive and self._adaptive.inner)
         del found["adaptive.times"]
-        texts = {"missing": self._missing, "culprit": self.culprit}
-        return (
-            found
-            | self._by_rung.saved()
-            | {name: np.frombuffer(text.encode(), np.uint8) for name, text in texts.items()}
-            | {"kept": np.array(self._kept)}
-        )
+        return found | self._by_rung.saved() | self._aimed.saved()
 
     def put(self, saved: Mapping[str, np.ndarray]) -> None:
         """See `PreparedRun`."""
@@ -230,10 +223,9 @@ class PreparedAdaptive(PreparedNodes):
         put_arrays("adaptive", self._adaptive, saved)
         put_arrays("inner", self._adaptive and self._adaptive.inner, saved)
         self._by_rung.put(saved)
-        self._missing, self.culprit = (saved[n].tobytes().decode() for n in ("missing", "culprit"))
-        self._kept = float(saved["kept"])
+        self._aimed.put(saved)
         if self._adaptive is not None:
-            self._adaptive = self._adaptive._replace(tolerance=self._kept)
+            self._adaptive = self._adaptive._replace(tolerance=self._aimed.now)
 
     def run_from(
         self, starts: Starts, begin: int, history: np.ndarray, chunk: Chunk
@@ -258,7 +250,7 @@ class PreparedAdaptive(PreparedNodes):
                 self.layout,
                 self.nodes,
                 self._buffers,
-                Control(self.corrections, self.most, RESIDUAL_SHARE * self._kept, np.inf,
+                Control(self.corrections, self.most, RESIDUAL_SHARE * self._aimed.now, np.inf,
                         PREDICTION),
                 self._adaptive,
                 chunk._replace(start=done, count=max(0, end - done), records=self._record.values),
@@ -316,16 +308,9 @@ class PreparedAdaptive(PreparedNodes):
             return STEP_LIMIT
         adaptive = self._adaptive
         p, name = self.jacobian.owners[self.nodes.unknown[int(adaptive.state[CULPRIT])]]
-        self.culprit = f"{self.network.parts[p].name}.{name}"
-        self._missing = self._missing or (
-            f"{self.culprit} misses the tolerance of {self.tolerance:g} at {t:g} s even with the "
-            f"smallest step of {RUNGS[0] * self._tick:.3g} s; use a larger tolerance, or a smaller "
-            f"--step: the ladder reaches down to 1/{TICKS // RUNGS[0]} of it"
-        )
-        if self._kept >= 1.0:
-            self.problem = self._missing
+        if not self._aimed.double(f"{self.network.parts[p].name}.{name}", t, self._tick):
+            self.problem = self._aimed.missed
             return STEP_LIMIT
-        self._kept *= 2.0
         adaptive.state[MISSED_NOW] = 0
-        self._adaptive = adaptive._replace(tolerance=self._kept)
+        self._adaptive = adaptive._replace(tolerance=self._aimed.now)
         return DONE
