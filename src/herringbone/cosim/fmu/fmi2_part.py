@@ -3,6 +3,7 @@
 import atexit
 import ctypes
 import itertools
+from contextlib import suppress
 from copy import copy
 
 from fmpy.fmi1 import FMICallException
@@ -13,7 +14,9 @@ from fmpy.fmi2 import (
     fmi2CallbackFreeMemoryTYPE,
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
+    fmi2DoStepStatus,
     fmi2LastSuccessfulTime,
+    fmi2Pending,
     fmi2Terminated,
     free,
 )
@@ -25,6 +28,10 @@ from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.part import FmuPart
 
 _DISCARD = 2
+_NOBODY_WAITS = (
+    b"its step goes on after doStep has returned (canRunAsynchronuously, fmi2Pending), and nobody "
+    b"waits for that here; let it step before it returns"
+)
 _PYTHONFMU = "finalizePythonInterpreter"
 """A function that only pythonfmu's libraries have."""
 _keys = itertools.count(1)
@@ -102,7 +109,7 @@ class Fmu2Part(FmuPart):
         It tells after a step that it discarded, and not after fmi2Fatal. What pythonfmu tells is
         no answer: it calls every step the end for which `do_step` returns False.
         """
-        if self._log.fatal or hasattr(self.slave.dll, _PYTHONFMU):
+        if self._log.fatal or hasattr(self.slave.dll, _PYTHONFMU) or self._goes_on():
             return None
         try:
             ended = self.slave.getBooleanStatus(fmi2Terminated)
@@ -114,6 +121,23 @@ class Fmu2Part(FmuPart):
         said = f"the part came to {last:g} s; if it discarded the step, a smaller one may do"
         self._log.add(_DISCARD, said.encode())
         return None
+
+    def _goes_on(self) -> bool:
+        """True if a step that did not succeed goes on behind doStep; it is given up, with a line.
+
+        FMI 2.0.4, 4.2.2: until it is done, or given up, no other call is allowed.
+        """
+        if not self.model.coSimulation.canRunAsynchronuously:
+            return False
+        try:
+            going_on = self.slave.getStatus(fmi2DoStepStatus) == fmi2Pending
+        except FMICallException:
+            return False
+        if going_on:
+            self._log.add(_DISCARD, _NOBODY_WAITS)
+            with suppress(FMICallException):
+                self.slave.cancelStep()
+        return going_on
 
     def free(self) -> None:
         """Free the instance; see `FmuPart.free`."""

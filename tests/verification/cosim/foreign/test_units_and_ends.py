@@ -23,7 +23,7 @@ TORQUE = {"N.m": (1.0, 'kg="1" m="2" s="-2"'), "N.mm": (1e-3, 'kg="1" m="2" s="-
 NAMES = ["inertia", "angle_unit", "speed_unit", "torque_unit", "wrap", "start"]
 
 
-def description(units):
+def description(units, more=""):
     """Of a mass whose torque, angle and speed have these units, each (name, factor, exponents)."""
     parameters = "\n".join(
         f'<ScalarVariable name="{name}" valueReference="{k}" causality="parameter"'
@@ -41,7 +41,7 @@ def description(units):
 <fmiModelDescription fmiVersion="2.0" modelName="turning_mass" guid="t"
  numberOfEventIndicators="0">
 <CoSimulation modelIdentifier="turning_mass" canHandleVariableCommunicationStepSize="true"
- canGetAndSetFMUstate="true"/>
+ canGetAndSetFMUstate="true"{more}/>
 <UnitDefinitions>{definitions}</UnitDefinitions>
 <ModelVariables>
 {parameters}
@@ -170,6 +170,21 @@ def test_fmi2_part_that_ends_the_simulation(tmp_path, mass, end):
         f"the part came to {end:g} s; if it discarded the step, a smaller one"
         in found.outcome.message
     )
+
+
+def test_a_step_that_goes_on_behind_do_step_is_told(tmp_path):
+    """FMI 2.0's asynchronous steps: the file ends the process if it is asked anything meanwhile."""
+    text = description(named("N.m", "rad", "rad/s"), ' canRunAsynchronuously="true"')
+    file = compiled_fmu(SOURCE, text, tmp_path)
+    (tmp_path / "system.toml").write_text(f'[parts]\none = {{ fmu = "{file.name}" }}\n')
+    values = {"one.start": 100.0, "one.end": 0.05, "one.refuses": 2.0}
+    result = hb.run(tmp_path, values=values, t_end=0.1, record_step=0.02)
+    assert result.outcome.kind is OutcomeKind.PART_FAILED
+    assert result.outcome.message.endswith(
+        "its step goes on after doStep has returned (canRunAsynchronuously, fmi2Pending), and "
+        "nobody waits for that here; let it step before it returns"
+    )
+    assert result.data["time"].iloc[-1] == pytest.approx(0.04)
 
 
 @pytest.mark.parametrize("options", [{"step": None, "tolerance": 1e-3}, {"step": 1e-4}])
