@@ -8,10 +8,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from herringbone.core.part import Part, Value
-from herringbone.cosim.fmu.values import column_type
+from herringbone.core import FmuError, ParameterError
+from herringbone.core.part import Part, PartVariable, Value
+from herringbone.cosim.fmu.values import as_value, column_type
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.types import rounds
 
 
 class OtherSignals:
@@ -35,16 +37,27 @@ class OtherSignals:
     @property
     def notes(self) -> list[str]:
         """How they travel."""
-        if not self._connections:
-            return []
-        c, more = self._connections[0], len(self._connections) - 1
-        source, target = self._parts[c.source], self._parts[c.target]
-        also = f" and {more} more" if more else ""
+        held = "of type {}, exchanged at communication points and held over the step"
+        rounded = [c for c in self._connections if rounds(*self._ends(c))]
         return [
-            f"connection '{source.name}.{c.output}' -> '{target.name}.{c.input}'{also}: of type "
-            f"{source.variables[c.output].type}, exchanged at communication points and held over "
-            "the step"
+            *self._said(self._connections, held),
+            *self._said(rounded, "{} values are rounded to the 24 bits of a Float32"),
         ]
+
+    def _said(self, connections: Sequence[Connection], what: str) -> list[str]:
+        """A line for some connections, if there are any; `what` takes the type of the output."""
+        if not connections:
+            return []
+        c, more = connections[0], len(connections) - 1
+        also = f" and {more} more" if more else ""
+        source, target = self._parts[c.source].name, self._parts[c.target].name
+        said = what.format(self._ends(c)[0].type)
+        return [f"connection '{source}.{c.output}' -> '{target}.{c.input}'{also}: {said}"]
+
+    def _ends(self, c: Connection) -> tuple[PartVariable, PartVariable]:
+        """The output and the input."""
+        source, target = self._parts[c.source], self._parts[c.target]
+        return source.variables[c.output], target.variables[c.input]
 
     @property
     def names(self) -> list[str]:
@@ -79,12 +92,23 @@ class OtherSignals:
         for p, rows in self._by_source().items():
             values = self._values(p, [c.output for c in rows])
             for c, value in zip(rows, values, strict=True):
-                found.setdefault(c.target, {})[c.input] = c.converted(value)
+                found.setdefault(c.target, {})[c.input] = self._rounded(c, c.converted(value))
         changed, self._given = found != self._given, found
         for p, given in found.items():
             self.asked = self._parts[p].name
             self._parts[p].put_values(given)
         return changed
+
+    def _rounded(self, c: Connection, value: Value) -> Value:
+        """A value as the input takes it; raises FmuError where single precision has no such one."""
+        target = self._parts[c.target]
+        if not rounds(*self._ends(c)):
+            return value
+        self.asked = target.name
+        try:
+            return as_value("Float32", value, f"{target.name}.{c.input} = {value!r}")
+        except ParameterError as error:
+            raise FmuError(str(error)) from error
 
     def _by_source(self) -> Mapping[int, list[Connection]]:
         found: dict[int, list[Connection]] = {}
@@ -93,8 +117,16 @@ class OtherSignals:
         return found
 
     def _values(self, p: int, names: Sequence[str]) -> list[Value]:
-        self.asked = self._parts[p].name
-        return self._parts[p].get_values(names)
+        part = self._parts[p]
+        self.asked = part.name
+        reals = [name for name in names if part.variables[name].is_real]
+        others = [name for name in names if name not in reals]
+        found: dict[str, Value] = {}
+        if reals:
+            found.update(zip(reals, part.get(reals), strict=True))
+        if others:
+            found.update(zip(others, part.get_values(others), strict=True))
+        return [found[name] for name in names]
 
     def sample(self, rows: int) -> None:
         """Read the recorded outputs, if there are fewer than so many rows; raises FmuError."""

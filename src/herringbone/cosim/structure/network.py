@@ -10,7 +10,7 @@ from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.joining import Place, joined
 from herringbone.cosim.structure.roles import find_roles
 from herringbone.cosim.structure.system import System
-from herringbone.cosim.structure.types import fits
+from herringbone.cosim.structure.types import fits, rounds
 from herringbone.cosim.structure.units import unit_conversion
 
 MOST_MULTIPLE = 100
@@ -157,7 +157,7 @@ def _connection(
 ) -> Connection:
     source, target = (part.variables[name] for part, name in (output, input_))
     where = f"'{output[0].name}.{source.name}' -> '{input_[0].name}.{target.name}'"
-    if not fits(source, target):
+    if not (fits(source, target) or rounds(source, target)):
         raise StructureError(
             f"connection {where}: {source.type} does not fit into {target.type} without loss"
             + (", because their items differ" if source.type == target.type else "")

@@ -1,4 +1,4 @@
-"""Which FMI types fit into which, so that a connection loses nothing."""
+"""Which FMI types fit into which, so that a connection loses nothing, or digits alone."""
 
 from herringbone.core.part import PartVariable
 
@@ -32,6 +32,11 @@ def fits(source: PartVariable, target: PartVariable) -> bool:
     least, most = _range(source)
     lowest, highest = _HOLDS[target.type]
     return lowest <= least and most <= highest
+
+
+def rounds(source: PartVariable, target: PartVariable) -> bool:
+    """True if an output of double precision feeds an input that keeps 24 bits of it."""
+    return source.type in _REALS and target.type == "Float32"
 
 
 def _range(variable: PartVariable) -> tuple[int, int]:

@@ -124,13 +124,13 @@ def test_undeclared_unit_is_noted():
         ("Int32", "Int64", True), ("Int64", "Int32", False), ("UInt8", "Int16", True),
         ("UInt16", "Int16", False), ("Int8", "UInt64", False), ("Integer", "Real", True),
         ("Int64", "Float64", False), ("UInt32", "Float64", True), ("Int16", "Float32", True),
-        ("Int32", "Float32", False), ("Float32", "Real", True), ("Float64", "Float32", False),
+        ("Int32", "Float32", False), ("Float32", "Real", True), ("Float64", "Float32", True),
         ("Boolean", "Integer", False), ("Boolean", "Boolean", True), ("String", "String", True),
         ("String", "Binary", False), ("Float64", "Int64", False), ("Enumeration", "Int64", True),
         ("Enumeration", "Int32", False), ("Int32", "Enumeration", False),
     ],
 )  # fmt: skip
-def test_types_that_lose_nothing_can_be_connected(output, input_, fit):
+def test_types_that_lose_nothing_but_digits_can_be_connected(output, input_, fit):
     parts = [
         FakePart("p").real("y", "output", type=output),
         FakePart("q").real("u", "input", type=input_),

@@ -174,6 +174,17 @@ def test_integers_reach_wider_types_and_reals(all_types):
     assert result.data["b.Float32_out"].iloc[-1] == np.float32(-7.0)
 
 
+def test_doubles_reach_single_precision_rounded(all_types):
+    """With a line; what is too large is refused."""
+    rounded = two(all_types["plain"], ("a.d_out", "b.Float32_in"))
+    result = run(rounded, {"a.d": 0.1}, step=0.05)
+    assert result.data["b.Float32_out"].iloc[-1] == np.float32(0.1)
+    said = "connection 'a.d_out' -> 'b.Float32_in': Float64 values are rounded to the 24 bits of a"
+    assert f"{said} Float32" in result.info.notes
+    said = "b.Float32_in = 1e+39: it is too large for a Float32"
+    refused(said, rounded, {"a.d": 1e39}, step=0.05)
+
+
 @pytest.mark.parametrize("name", ["plain", "events"])
 def test_value_that_is_refused_ends_the_run_with_its_results(all_types, name):
     system = two(all_types[name], ("a.UInt64_out", "b.UInt64_in"), ("a.y", "b.u"))
