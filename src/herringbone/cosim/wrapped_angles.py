@@ -16,6 +16,7 @@ _TURN = 2.0 * math.pi
 _NEAR = 0.1
 """Of a turn: by how much a jump may miss it, and how far the angle may otherwise be off."""
 _FEWEST = 3
+_NAMED = "phi"
 
 
 def wrapped_angles(
@@ -42,10 +43,9 @@ def wrapped_angles(
     place = {name: k for k, name in enumerate(names)}
     found = []
     for k, (name, v) in enumerate(zip(names, variables, strict=True)):
-        angle = v.dimension is not None and tuple(v.dimension[2]) == _ANGLE
-        if v.rate is not None or not (angle or v.unit == "rad") or times.size < _FEWEST:
-            continue
         rate = named_rate(name, place)
+        if v.rate is not None or not _is_angle(name, v, rate) or times.size < _FEWEST:
+            continue
         speed = None if rate is None else in_si(place[rate])
         if jumps := _jumps(times, in_si(k), speed):
             more = f" and at {len(jumps) - 1} more times" if len(jumps) > 1 else ""
@@ -55,6 +55,14 @@ def wrapped_angles(
                 + (twist if name in taken else "; nothing is connected to it")
             )
     return found
+
+
+def _is_angle(name: str, v: PartVariable, rate: str | None) -> bool:
+    """True for what is measured in radians; without a unit, for a `phi` whose speed is there."""
+    if v.dimension is not None:
+        return tuple(v.dimension[2]) == _ANGLE
+    named = name.rpartition(".")[2].partition("_")[0] == _NAMED
+    return v.unit == "rad" or (not v.unit and named and rate is not None)
 
 
 def _jumps(times: np.ndarray, angle: np.ndarray, speed: np.ndarray | None) -> list[int]:

@@ -132,10 +132,16 @@ def test_what_cannot_be_converted_is_refused(tmp_path, mass, unit, said):
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("unit", ["rad", "deg"])
+@pytest.mark.parametrize("unit", ["rad", "deg", ""])
 def test_wrapped_angle_is_noticed(tmp_path, mass, unit):
-    """At 100 rad/s the first turn is complete after 62.8 ms; alone, so that nothing breaks."""
-    file, sizes = mass(*named("N.m", unit, "rad/s"))
+    """At 100 rad/s the first turn is complete after 62.8 ms; alone, so that nothing breaks.
+
+    Where no unit is declared its name tells.
+    """
+    file, sizes = mass(*named("N.m", unit or "rad", "rad/s"))
+    if not unit:
+        text = description(named("N.m", "rad", "rad/s")).replace('<Real unit="rad"/>', "<Real/>")
+        file = compiled_fmu(SOURCE, text, tmp_path)
     (tmp_path / "system.toml").write_text(f'[parts]\none = {{ fmu = "{file}" }}\n')
     values = {f"one.{name}": value for name, value in sizes.items()} | {"one.start": 100.0}
     for wrap in (0.0, 1.0):
