@@ -1,6 +1,7 @@
 """The interface Jacobian of the iterated algorithms, and the correction that follows from it."""
 
 import numpy as np
+from scipy.linalg.lapack import dgetrf, dgetri
 
 from herringbone.core import HerringboneError
 from herringbone.core.process.one_thread import one_blas_thread
@@ -105,11 +106,14 @@ def correction_matrix(jacobian: np.ndarray, t: float, h: float) -> np.ndarray:
     Raises:
         CouplingError: the matrix is singular.
     """
-    try:
-        with one_blas_thread():  # threads wait for each other far longer
-            return np.linalg.inv(np.eye(len(jacobian)) - jacobian).T.copy()
-    except np.linalg.LinAlgError:
+    if jacobian.size == 0:
+        return jacobian.copy()
+    with one_blas_thread():  # threads wait for each other far longer
+        factors, pivots, singular = dgetrf(np.eye(len(jacobian)) - jacobian)
+        inverse, _ = dgetri(factors, pivots) if singular == 0 else (factors, 0)
+    if singular:
         raise CouplingError(
             f"the interface Jacobian is singular at {t:g} s (h = {h:g} s); "
             "use another step, or fixed_point"
-        ) from None
+        )
+    return inverse.T  # LAPACK writes columns
