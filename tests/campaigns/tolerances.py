@@ -179,9 +179,10 @@ def lines(case: Case) -> Iterator[tuple[str, bool]]:
         group = max(errors, key=errors.__getitem__)
         over = errors[group] / tolerance
         limit = next((limit for limit in LIMITS if any(limit in n for n in found.info.notes)), "")
-        holds = over <= MOST and (over >= LEAST or bool(limit)) and seconds <= DEARER * cheapest
-        cheapest = min(cheapest, seconds)
         told = estimated(found) / tolerance
+        known = math.isfinite(told) and over <= MOST and (over >= LEAST or bool(limit))
+        holds = known and seconds <= DEARER * cheapest
+        cheapest = min(cheapest, seconds)
         step, algorithm = found.info.communication_step, found.info.algorithm
         yield (
             (
@@ -194,11 +195,11 @@ def lines(case: Case) -> Iterator[tuple[str, bool]]:
 
 
 def estimated(found: Result) -> float:
-    """Of the run by itself [1]."""
+    """Of the run by itself [1]; NaN if it tells none."""
     if found.verification:
         return found.verification.error
     estimate = found.info.estimate
-    return math.hypot(estimate["coupling"], estimate["inner_steps"])
+    return math.hypot(estimate["coupling"], estimate["inner_steps"]) if estimate else math.nan
 
 
 def main(count: int = 0, seed: str | None = None, *names: str) -> int:
