@@ -182,7 +182,7 @@ def _errors(result: Result) -> Iterator[str]:
         )
         if found.worst:
             errors += f"; worst {found.worst} {100.0 * found.worst_error:.3g} %"
-        errors = errors or "no output changes in the run"
+        errors = errors or ("no output changes in the run" if found.known else "not known")
         yield labelled("Error by steps", f"{errors} ({found.how})")
 
 

@@ -163,19 +163,29 @@ class Search:
         note = f"tolerance = {self._tolerance:g}: steps of {last.step:g} s, {size}runs: {runs}"
         notes = (*result.info.notes, note + self._limit())
         result = replace(result, info=replace(result.info, notes=notes))
-        if found and last.error > self._tolerance and result.outcome.completed:
-            said = f"tolerance = {self._tolerance:g} is not met: error {last.error:.2g}; {self.why}"
-            result = replace(result, outcome=replace(result.outcome, message=said))
-        if found:
+        if self._wished or found:
             result = replace(result, verification=self._verification(found))
+        if (said := self._headline()) and result.outcome.completed:
+            result = replace(result, outcome=replace(result.outcome, message=said))
         return last.found._replace(result=result)
 
-    def _verification(self, found: Apart) -> Verification:
+    def _headline(self) -> str:
+        """That the tolerance is not met, or that nobody knows; "" if it is."""
+        last, asked = self.tried[-1], f"tolerance = {self._tolerance:g}"
+        if last.differences is None:
+            return f"whether {asked} is met is not known: {self.why}" if self._wished else ""
+        missed = last.error > self._tolerance
+        return f"{asked} is not met: error {last.error:.2g}; {self.why}" if missed else ""
+
+    def _verification(self, found: Apart | None) -> Verification:
         """Of the last run; its worst output as its worst group, of which more is known."""
         last = self.tried[-1]
+        asked = self._tolerance if self._wished else None
+        if found is None:
+            how = "no other run ended well"
+            return Verification({}, "", 0.0, last.step, how, asked, known=False)
         groups = {name: group.error for name, group in last.groups.items()}
         worst = last.error / last.apart * found.worst_difference if last.apart else 0.0
-        asked = self._tolerance if self._wished else None
         step = self.tried[-2].step
         return Verification(groups, found.worst, worst, step, "by longer steps", asked)
 

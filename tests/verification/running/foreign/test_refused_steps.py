@@ -38,6 +38,11 @@ def test_usual_steps_are_tried_where_parts_take_one_length_only(tmp_path, option
     assert result.info.communication_step == pytest.approx(1e-4, rel=1e-6)
     assert speed_error(result) < (2 * np.pi * 82 * 1e-4) ** 2
     assert any("its error is not known: " in note for note in result.info.notes)
+    if options:
+        assert result.verification.missed
+        assert result.outcome.message.startswith("whether tolerance = 0.001 is met is not known: ")
+    else:
+        assert result.verification is None
 
 
 def test_what_fails_with_every_step_ends_as_such(tmp_path):
