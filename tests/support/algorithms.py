@@ -141,8 +141,10 @@ def check_cost(algorithm: Algorithm) -> None:
     for part in ("left", "right", "spring"):
         more = found.passes[part] - found.macro_steps * algorithm.passes
         assert 0 <= more < found.macro_steps
-        assert found.passes[part] - found.rollbacks <= found.macro_steps
-    assert found.passes["spring"] - found.rollbacks == found.macro_steps
+    left, right, spring = (found.passes[part] for part in ("left", "right", "spring"))
+    assert spring - found.rollbacks == found.macro_steps
+    assert left == right
+    assert 0 <= 2 * (spring - left) <= spring - found.macro_steps * algorithm.passes
     assert (found.rollbacks > 0) == ("rollback" in algorithm.needs)
 
 
