@@ -68,19 +68,29 @@ def test_rungs_whose_inner_steps_err_too_much_are_passed_over():
 
 
 @pytest.mark.parametrize(
-    ("inner_error", "most", "count", "times"),
-    [(1e-6, 2.0, 1.0, 2.0), (1e-6, 1.5, 2.0, 1.0), (0.027, 2.0, 1.0, 2.0), (0.03, 2.0, 2.0, 1.0)],
+    ("coupling", "inner_error", "most", "count"),
+    [
+        (1e-9, 0.9, 2.0, 1.0),
+        (1e-9, 0.9, 1.5, 2.0),
+        (1e-9, 1.1, 2.0, 2.0),
+        (0.3, 0.65, 2.0, 1.0),
+        (0.3, 0.75, 2.0, 2.0),
+        (0.8, 0.4, 2.0, 1.0),
+        (0.8, 0.5, 2.0, 2.0),
+    ],
 )
-def test_inner_steps_get_longer_where_the_tolerance_lets_them(inner_error, most, count, times):
+def test_inner_steps_get_longer_where_the_tolerance_lets_them(coupling, inner_error, most, count):
     """From 240 to 480 ticks, 120 from node to node: one inner step there in place of two of 60.
 
-    It errs 16 times as much: 0.45 of what is aimed at or less, unless it is not stable.
+    It errs 16 times as much, and the coupling 64 times, both given over what is aimed at: at most
+    what the coupling leaves, or 0.45, unless it is not stable.
     """
-    found = after_many(1e-9 * AIM, inner_error * AIM, most)
+    found = after_many(coupling / 2.0**ORDER * AIM, inner_error / 2.0**4 * AIM, most)
     rung = next_rung(found, HERE, DEGREE, True)
     choose_inner_steps(found, rung, DEGREE, True)
+    times = 2.0 / count
     assert (RUNGS[rung], found.inner.times[TO_BE]) == (480, times)
-    assert inner_steps(found, rung, DEGREE, found.inner.times[TO_BE]) == count
+    assert inner_steps(found, rung, DEGREE, times) == count
     choose_inner_steps(found, rung, DEGREE, False)
     assert found.inner.times[TO_BE] == 1.0
 

@@ -39,8 +39,9 @@ _COARSE = 40.0
 """At a loose tolerance steps are so long that the derivatives which the estimate lacks count, too:
 1.6 to 2.1 times 1e-2 was reached on the test rig without."""
 _LITTLE = 0.45
-"""Share of what is aimed at that inner steps may err which are longer than at the start: they erred
-0.12 to 2.6 times the estimate on these systems and the shipped drivetrains."""
+"""Share of what is aimed at that inner steps may err which are longer than at the start; or what
+the coupling leaves of it, if that is more. They erred 0.12 to 2.6 times the estimate on these
+systems and the shipped drivetrains, most where the coupling erred much, too."""
 _LEAST, _MOST = 0.3, 2.0
 """Times what the step may change: from half the way to the next row to all of it."""
 
@@ -127,7 +128,7 @@ def _fewest(adaptive: Adaptive, rung: int, degree: int, longer: bool) -> tuple[f
     while True:
         inner = _inner(adaptive, adaptive.counts, rung, degree, count)
         error = np.hypot(coupling, inner)
-        if count >= usual or (error <= bound and inner <= _LITTLE * aim):
+        if count >= usual or (error <= bound and inner <= max(_LITTLE * aim, aim - coupling)):
             return count, error
         count += 1.0
 
