@@ -17,7 +17,7 @@ from herringbone.core import HerringboneError
 from herringbone.core.part import Part, closing_all
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import LI
-from herringbone.cosim.algorithms.adaptive import PreparedAdaptive
+from herringbone.cosim.algorithms.adaptive.prepared import PreparedAdaptive
 from herringbone.cosim.algorithms.iterated import PreparedNodes
 from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping
 from herringbone.cosim.loops import repeated

@@ -20,7 +20,8 @@ with inner nodes.
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from herringbone.cosim.algorithms.adaptive import LARGEST_STEP, PreparedAdaptive
+from herringbone.cosim.algorithms.adaptive.control import LARGEST_STEP
+from herringbone.cosim.algorithms.adaptive.prepared import PreparedAdaptive
 from herringbone.cosim.algorithms.base import Algorithm, option
 from herringbone.cosim.algorithms.iterated import PreparedNodes
 from herringbone.cosim.structure.network import Network

@@ -5,8 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from herringbone.cosim.algorithms.adaptive_figures import longest_steps
+from herringbone.cosim.algorithms.adaptive.figures import longest_steps
 from herringbone.cosim.loops.adaptive_step.ladder import RUNGS, TICKS
+from herringbone.cosim.rows.record import Grid
 
 TICK, TOLERANCE = 1e-4 / TICKS, 1e-2
 
@@ -19,7 +20,7 @@ def line_of(longest_taken, error, every, among=480):
     run = SimpleNamespace(
         rungs=np.array(RUNGS), taken=taken, last=int(taken @ RUNGS), far=np.array([error])
     )
-    return longest_steps(run, TICK, every, TOLERANCE)
+    return longest_steps(run, Grid(TICK, run.last, every), TOLERANCE)
 
 
 @pytest.mark.parametrize(

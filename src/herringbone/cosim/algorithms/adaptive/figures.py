@@ -5,6 +5,7 @@ import numpy as np
 from herringbone.cosim.layouts.adaptive import Adaptive
 from herringbone.cosim.loops.adaptive_step.ladder import TICKS
 from herringbone.cosim.loops.adaptive_step.step_error import COUPLING, INNER_STEPS, SIZE
+from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import ErrorEstimate, StepStatistics
 
 _MOST_OF_IT = 0.9
@@ -31,24 +32,23 @@ def step_statistics(adaptive: Adaptive, tick: float) -> StepStatistics:
     )
 
 
-def longest_steps(adaptive: Adaptive, tick: float, every: int, tolerance: float) -> str:
+def longest_steps(adaptive: Adaptive, grid: Grid, tolerance: float) -> str:
     """A line if most of the run was in the longest steps that there are, and errs little; or "".
 
     Args:
         adaptive: of the run.
-        tick: in which steps are counted [s].
-        every: ticks from row to row; 0: rows are where steps end.
+        grid: in ticks.
         tolerance: that is asked for [1].
     """
-    most = min(every or TICKS, TICKS)
+    most = min(grid.every or TICKS, TICKS)
     rung = int(np.searchsorted(adaptive.rungs, most, side="right")) - 1
     share = adaptive.rungs[rung] * adaptive.taken[rung] / adaptive.last
     if share < _MOST_OF_IT or not adaptive.far[0] < _LITTLE * tolerance:
         return ""
-    what = "rows are apart" if most == every else "steps can be"
+    what = "rows are apart" if most == grid.every else "steps can be"
     return (
-        f"macro steps are as long as {what} ({most * tick:.3g} s), and err {adaptive.far[0]:.2g}, "
-        f"where {tolerance:g} is asked for"
+        f"macro steps are as long as {what} ({most * grid.step:.3g} s), and err "
+        f"{adaptive.far[0]:.2g}, where {tolerance:g} is asked for"
     )
 
 

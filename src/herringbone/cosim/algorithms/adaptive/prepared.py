@@ -4,16 +4,17 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from herringbone.cosim.algorithms.adaptive_figures import (
+from herringbone.cosim.algorithms.adaptive.aimed import Aimed
+from herringbone.cosim.algorithms.adaptive.control import step_control
+from herringbone.cosim.algorithms.adaptive.figures import (
     error_estimate,
     longest_steps,
     step_statistics,
 )
-from herringbone.cosim.algorithms.aimed import Aimed
+from herringbone.cosim.algorithms.adaptive.rung_jacobians import RungJacobians
 from herringbone.cosim.algorithms.iterated import SMALLEST, PreparedNodes
 from herringbone.cosim.algorithms.jacobian import PREDICTION, CouplingError, StepRefusedError
 from herringbone.cosim.algorithms.prepared import PreparedRun
-from herringbone.cosim.algorithms.rung_jacobians import RungJacobians
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.adaptive import (
     ACCEPTED,
@@ -29,32 +30,19 @@ from herringbone.cosim.layouts.adaptive import (
     USED,
     WANTED,
     Adaptive,
-    new_adaptive,
 )
-from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping, lengthened
+from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping
 from herringbone.cosim.layouts.layout import Chunk
-from herringbone.cosim.layouts.measured import channel_outputs, measured_signals
+from herringbone.cosim.layouts.measured import channel_outputs
 from herringbone.cosim.layouts.nodes import Buffers, Control, new_buffers
 from herringbone.cosim.layouts.starts import Starts
 from herringbone.cosim.loops.adaptive_step.ladder import (
-    FIRST,
-    FIRST_TOLERANCE,
     RUNGS,
     TICKS,
-    dividing_rung,
 )
 from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT, run_adaptive
-from herringbone.cosim.loops.adaptive_step.step_choice import (
-    AIM,
-    AIM_BETWEEN_ROWS,
-    HELD,
-    HELD_BETWEEN_ROWS,
-)
 from herringbone.cosim.loops.adaptive_step.step_error import (
     LARGEST,
-    ORDER,
-    room_for,
-    update_sizes,
 )
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
 from herringbone.cosim.loops.nodes import REFRESH
@@ -64,10 +52,6 @@ from herringbone.cosim.structure.network import Network
 
 RESIDUAL_SHARE = 1.0
 """Share of the tolerance that the corrections may leave."""
-MEMORY = 100.0
-"""Time over which forces are taken about a straight line, in largest steps."""
-LARGEST_STEP = 2e-4
-"""The largest step [s] where nothing is told; shorter ones, for rows between, leave the memory."""
 
 
 class PreparedAdaptive(PreparedNodes):
@@ -107,7 +91,7 @@ class PreparedAdaptive(PreparedNodes):
         self._by_rung = RungJacobians()
         self._adaptive: Adaptive | None = None
         self._record = GrowingRecord(0)
-        self._tick, self._every = 0.0, 0
+        self._grid = Grid(0.0, 0, 0)
         self._aimed = Aimed(tolerance)
         self.inner: InnerStepping = NO_INNER
         self.channels: Mapping[str, Sequence[str]] = {}
@@ -121,9 +105,8 @@ class PreparedAdaptive(PreparedNodes):
 
     def grid(self, grid: Grid) -> Grid:
         """The same end and records in ticks; the grid's step is the largest."""
-        self._tick, self._last = grid.step / TICKS, grid.count * TICKS
-        self._every = grid.every * TICKS
-        return Grid(self._tick, self._last, self._every)
+        self._grid = Grid(grid.step / TICKS, grid.count * TICKS, grid.every * TICKS)
+        return self._grid
 
     def record(self, grid: Grid, columns: int, window: int | None = None) -> GrowingRecord:
         """Rows as the steps come, or at equal distances."""
@@ -139,7 +122,7 @@ class PreparedAdaptive(PreparedNodes):
     @property
     def steps(self) -> StepStatistics | None:
         """Macro steps by their length."""
-        return step_statistics(self._adaptive, self._tick) if self._adaptive else None
+        return step_statistics(self._adaptive, self._grid.step) if self._adaptive else None
 
     @property
     def adaptive(self) -> Adaptive | None:
@@ -163,52 +146,29 @@ class PreparedAdaptive(PreparedNodes):
             return self._downgrades
         missed = int(self._adaptive.state[MISSED])
         if not missed:
-            line = longest_steps(self._adaptive, self._tick, self._every, self.tolerance)
+            line = longest_steps(self._adaptive, self._grid, self.tolerance)
             return (*self._downgrades, *filter(None, (line,)))
-        return (*self._downgrades, self._aimed.line(missed, self._tick))
+        return (*self._downgrades, self._aimed.line(missed, self._grid.step))
 
-    def _make_adaptive(self, buffers: Buffers) -> Adaptive:
-        nodes = self.nodes
+    def _begin(self, history: np.ndarray) -> tuple[Buffers, Adaptive]:
+        """What the loop works on, at the start."""
+        buffers = new_buffers(self.nodes, self.network.parts, history)
         found = channel_outputs(self.network, self.channels)
         self._downgrades += tuple(
             f"no part takes anything of '{group}': the step is not measured by these channels"
             for group in self.channels
             if group not in found
         )
-        measured = measured_signals(nodes, self._held(), list(found.values()))
-        adaptive = new_adaptive(
-            nodes,
-            np.array(RUNGS, dtype=np.int64),
-            measured=measured,
+        control = step_control(
+            self,
+            buffers,
+            self._grid,
             tolerance=self.tolerance,
-            last=self._last,
-            memory=MEMORY * max(TICKS * self._tick, LARGEST_STEP),
-            aim=AIM_BETWEEN_ROWS if self._every else AIM,
-            held=HELD_BETWEEN_ROWS if self._every else HELD,
-            inner=lengthened(self.network, self.inner, self._tick),
+            channels=found,
+            inner=self.inner,
             times=self._record.row_times,
-            room=room_for(measured.output.size),
         )
-        first = self._first_rung()
-        adaptive.state[[WANTED, USED, ROWS]] = first, first, 1
-        adaptive.state[[BEFORE, BEFORE_THAT]] = RUNGS[first]
-        buffers.nodes[:] = buffers.history[0]
-        update_sizes(
-            nodes, buffers, measured, adaptive.moments, adaptive.covered, adaptive.memory, 0.0
-        )
-        return adaptive
-
-    def _held(self) -> np.ndarray:
-        """1 for unknowns that a body holds over the step."""
-        held_by = {
-            (c.source, c.output)
-            for c in self.network.connections
-            if self.degree[c.target] == 0
-            and self.input_degree(c.target) < self.nodes.degree
-            and not self.layout.at_end[c.target]
-        }
-        sources = (self.jacobian.owners[i] for i in self.nodes.unknown)
-        return np.array([source in held_by for source in sources], dtype=np.int64)
+        return buffers, control
 
     def saved(self) -> Arrays:
         """See `PreparedRun`; rows and their times are the record's."""
@@ -236,8 +196,7 @@ class PreparedAdaptive(PreparedNodes):
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run up to the end of the chunk, which counts ticks; see `loops.stages.run_stages`."""
         if self._buffers is None or self._adaptive is None:
-            self._buffers = new_buffers(self.nodes, self.network.parts, history)
-            self._adaptive = self._make_adaptive(self._buffers)
+            self._buffers, self._adaptive = self._begin(history)
             status = self._correct(self._buffers, self._adaptive, chunk.start, chunk.h)
             if status != DONE:
                 return status, chunk.start, -1
@@ -262,14 +221,6 @@ class PreparedAdaptive(PreparedNodes):
                 status = self._loosened(done * chunk.h)
             if status != DONE or done >= end:
                 return status, done, culprit
-
-    def _first_rung(self) -> int:
-        """About the one that will be used, so that its Jacobian serves."""
-        p = self.nodes.degree
-        ticks = TICKS * FIRST[p] * (self.tolerance / FIRST_TOLERANCE) ** (1.0 / ORDER[p])
-        rung = max(0, int(np.searchsorted(RUNGS, ticks, side="right")) - 1)
-        left = min(self._every or self._last, self._last)
-        return dividing_rung(np.array(RUNGS), rung, left) if self._every else rung
 
     def _correct(self, buffers: Buffers, adaptive: Adaptive, done: int, tick: float) -> int:
         """Correction of the rung in use; a status of the loop."""
@@ -308,7 +259,7 @@ class PreparedAdaptive(PreparedNodes):
             return STEP_LIMIT
         adaptive = self._adaptive
         p, name = self.jacobian.owners[self.nodes.unknown[int(adaptive.state[CULPRIT])]]
-        if not self._aimed.double(f"{self.network.parts[p].name}.{name}", t, self._tick):
+        if not self._aimed.double(f"{self.network.parts[p].name}.{name}", t, self._grid.step):
             self.problem = self._aimed.missed
             return STEP_LIMIT
         adaptive.state[MISSED_NOW] = 0

@@ -1,0 +1,1 @@
+"""`li` with macro steps whose lengths follow a tolerance."""
