@@ -18,18 +18,19 @@ class Facts(ABC):
         """What tells it from others, by label; the most important ones first. Empty ones go."""
 
     def __repr__(self) -> str:
-        shown = "; ".join(f"{k} {_cut(v, _IN_LINE)}" for k, v in self._facts().items() if v)
+        shown = "; ".join(f"{k} {cut(v, _IN_LINE)}" for k, v in self._facts().items() if v)
         return f"{type(self).__name__}({shown})"
 
     def _repr_html_(self) -> str:
         rows = "".join(
             f'<tr><th style="text-align:left">{escape(label)}</th>'
-            f'<td style="text-align:left">{escape(_cut(text, _IN_TABLE))}</td></tr>'
+            f'<td style="text-align:left">{escape(cut(text, _IN_TABLE))}</td></tr>'
             for label, text in self._facts().items()
             if text
         )
         return f"<table><caption>{type(self).__name__}</caption><tbody>{rows}</tbody></table>"
 
 
-def _cut(text: str, most: int) -> str:
+def cut(text: str, most: int) -> str:
+    """The text, or the beginning of one of more characters than that."""
     return text if len(text) <= most else f"{text[: most - 3]}..."

@@ -4,7 +4,7 @@ They hold over a macro step, whatever the algorithm. The compiled loop stops whe
 and is not slowed down where there are none.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -28,6 +28,10 @@ class OtherSignals:
 
     def __init__(self, network: Network) -> None:
         self._parts, self._connections = network.parts, network.others
+        self._rounding = frozenset(c for c in self._connections if rounds(*self._ends(c)))
+        self._by_source: dict[int, list[Connection]] = {}
+        for c in self._connections:
+            self._by_source.setdefault(c.source, []).append(c)
         self._recorded = [_outputs(part) for part in network.parts]
         self._rows: list[list[Value]] = []
         self._dropped = 0
@@ -38,10 +42,10 @@ class OtherSignals:
     def notes(self) -> list[str]:
         """How they travel."""
         held = "of type {}, exchanged at communication points and held over the step"
-        rounded = [c for c in self._connections if rounds(*self._ends(c))]
+        rounding = [c for c in self._connections if c in self._rounding]
         return [
             *self._said(self._connections, held),
-            *self._said(rounded, "{} values are rounded to the 24 bits of a Float32"),
+            *self._said(rounding, "{} values are rounded to the 24 bits of a Float32"),
         ]
 
     def _said(self, connections: Sequence[Connection], what: str) -> list[str]:
@@ -89,7 +93,7 @@ class OtherSignals:
             FmuError: a part refuses.
         """
         found: dict[int, dict[str, Value]] = {}
-        for p, rows in self._by_source().items():
+        for p, rows in self._by_source.items():
             values = self._values(p, [c.output for c in rows])
             for c, value in zip(rows, values, strict=True):
                 found.setdefault(c.target, {})[c.input] = self._rounded(c, c.converted(value))
@@ -101,20 +105,14 @@ class OtherSignals:
 
     def _rounded(self, c: Connection, value: Value) -> Value:
         """A value as the input takes it; raises FmuError where single precision has no such one."""
-        target = self._parts[c.target]
-        if not rounds(*self._ends(c)):
+        if c not in self._rounding:
             return value
+        target = self._parts[c.target]
         self.asked = target.name
         try:
             return as_value("Float32", value, f"{target.name}.{c.input} = {value!r}")
         except ParameterError as error:
             raise FmuError(str(error)) from error
-
-    def _by_source(self) -> Mapping[int, list[Connection]]:
-        found: dict[int, list[Connection]] = {}
-        for c in self._connections:
-            found.setdefault(c.source, []).append(c)
-        return found
 
     def _values(self, p: int, names: Sequence[str]) -> list[Value]:
         part = self._parts[p]

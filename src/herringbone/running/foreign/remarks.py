@@ -3,6 +3,7 @@
 from collections.abc import Collection, Sequence
 
 from herringbone.core import Outcome
+from herringbone.core.facts import cut
 from herringbone.core.part import Part
 
 _SHOWN, _LONGEST = 2, 200
@@ -27,6 +28,6 @@ def remarks_of(parts: Sequence[Part], foreign: Collection[str], outcome: Outcome
 
 def _few(messages: Sequence[str]) -> str:
     """The first messages, and how many there are besides."""
-    shown = (m if len(m) <= _LONGEST else f"{m[: _LONGEST - 3]}..." for m in messages[:_SHOWN])
+    shown = (cut(message, _LONGEST) for message in messages[:_SHOWN])
     more = len(messages) - _SHOWN
     return "; ".join([*shown, *([f"and {more} more"] if more > 0 else [])])

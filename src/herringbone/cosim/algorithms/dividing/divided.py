@@ -87,8 +87,13 @@ def divide(prepared: "PreparedNodes", chunk: Chunk) -> tuple[int, int, int]:
     n, divisions = chunk.start, prepared.divisions
     if divisions.steps >= _FIRST + n // _ONE_IN:
         return _whole(prepared, chunk, 0.0)
-    divisions.steps += 1
-    return _Dividing(prepared, chunk).run()
+    dividing = _Dividing(prepared, chunk)
+    found = dividing.run()
+    if dividing.resolved:
+        divisions.steps += 1
+    else:
+        divisions.unresolved += 1
+    return found
 
 
 def _whole(prepared: "PreparedNodes", chunk: Chunk, begin: float) -> tuple[int, int, int]:
@@ -102,10 +107,14 @@ def _whole(prepared: "PreparedNodes", chunk: Chunk, begin: float) -> tuple[int, 
 
 
 class _Dividing:
-    """One macro step in pieces."""
+    """One macro step in pieces.
+
+    Attributes:
+        resolved: False if it has no jump, but a motion that it does not resolve.
+    """
 
     def __init__(self, prepared: "PreparedNodes", chunk: Chunk, *, looks: bool = True) -> None:
-        self._run, self._chunk = prepared, chunk
+        self._run, self._chunk, self.resolved = prepared, chunk, True
         self._jumps = prepared.jumps if looks else without(prepared.jumps)
         self._lengths = [_LONG_AGO, _LONG_AGO] if chunk.start == 0 else [1.0, 1.0]
         self._measured: int | None = None
@@ -203,8 +212,7 @@ class _Dividing:
 
     def _unresolved(self, first: np.ndarray, begin: float) -> tuple[int, int, int]:
         """The rest of a step that does not resolve a motion."""
-        divisions = self._run.divisions
-        divisions.steps, divisions.unresolved = divisions.steps - 1, divisions.unresolved + 1
+        self.resolved = False
         self._learn(first, 1.0, event=False)
         self._jumps = without(self._jumps)
         self._correction, self._measured = self._run.correction, 0
