@@ -165,8 +165,9 @@ class Search:
         result = replace(result, info=replace(result.info, notes=notes))
         if self._wished or found:
             result = replace(result, verification=self._verification(found))
-        if (said := self._headline()) and result.outcome.completed:
-            result = replace(result, outcome=replace(result.outcome, message=said))
+        if said := self._headline():
+            message = "; ".join(filter(None, (result.outcome.message, said)))
+            result = replace(result, outcome=replace(result.outcome, message=message))
         return last.found._replace(result=result)
 
     def _headline(self) -> str:

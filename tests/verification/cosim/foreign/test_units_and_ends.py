@@ -201,3 +201,16 @@ def test_the_error_of_a_run_that_a_part_ends_is_told(tmp_path, mass, options):
     assert result.outcome.kind is OutcomeKind.ENDED
     assert result.outcome.time == pytest.approx(0.015, rel=1e-9)
     assert 0.0 < result.verification.error <= 1e-3
+    assert result.outcome.message.endswith("ended the simulation at 0.015 s")
+
+
+def test_an_unknown_error_is_told_beside_the_part_that_ends_the_run(tmp_path, mass, monkeypatch):
+    """After one run alone, in the first line."""
+    monkeypatch.setattr("herringbone.running.steps.search._RUNS", 1)
+    file, _ = mass(*named("N.m", "rad", "rad/s"))
+    result = run(system(tmp_path / "s", file, file), {"end": 0.015}, step=None, tolerance=1e-3)
+    assert result.outcome.kind is OutcomeKind.ENDED
+    assert result.verification.missed
+    assert result.outcome.message.startswith(
+        "one ended the simulation at 0.015 s; whether tolerance = 0.001 is met is not known: "
+    )
