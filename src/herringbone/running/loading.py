@@ -25,6 +25,7 @@ from herringbone.cosim.units import in_si_units
 from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
+from herringbone.running.content import contents_of
 from herringbone.running.exporting.ssp_import import load_ssp, ssp_scene
 from herringbone.running.foreign.started import set_values
 from herringbone.running.housings.fmu_remarks import (
@@ -37,6 +38,7 @@ from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
 
 _declared: Remembered[dict[str, PartVariable]] = Remembered(64)
+_compliances: Remembered[float] = Remembered(64)
 _BUILDERS = {"native": build_native_fmus, "python": build_python_fmus}
 
 
@@ -133,12 +135,14 @@ def _compliance(spec: PartSpec) -> float:
     if spec.foreign:
         return usual_compliance()
 
+    own = replace(spec, fmu=None)
+
     def opened() -> Part:
-        part = _open_part(replace(spec, fmu=None), {}, shared=False)
+        part = _open_part(own, {}, shared=False)
         set_values(part, spec.values)
         return part
 
-    return compliance_of(opened)
+    return _compliances(tuple(contents_of(own)), lambda: compliance_of(opened))
 
 
 def open_parts(system: System, fmu: str) -> list[Part]:

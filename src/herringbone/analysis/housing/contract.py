@@ -11,6 +11,7 @@ Behaviour is tested in `behaviour`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 
 import numpy as np
 
@@ -131,6 +132,7 @@ def compliance_of(open_part: Callable[[], Part]) -> float:
     return Behaviour(Runs(lambda: in_si_units(open_part()), STEP)).compliance
 
 
+@cache
 def usual_compliance() -> float:
     """That of the component that is the housing if nothing else is said [m/N]."""
     return compliance_of(lambda: InProcessPart(Instance(component_for(Role.HOUSING), "usual")))

@@ -86,7 +86,7 @@ def bond_table(network: Network, members: Sequence[Member]) -> tuple[Bond, ...]:
     bonds = []
     for direction in bond_directions(network, members):
         bodies = dict.fromkeys(c.target for c, _ in direction.forces)
-        inverse = {p: _response(network, members, p, direction, direction) for p in bodies}
+        inverse = {p: _responses(network, members[p], p, [direction])[0, 0] for p in bodies}
         masses = {p: 1.0 / x for p, x in inverse.items() if x > 0.0}
         w = math.sqrt(direction.stiffness * sum(inverse.values()))
         zeta = direction.damping * w / (2.0 * direction.stiffness)
@@ -100,15 +100,14 @@ def bond_table(network: Network, members: Sequence[Member]) -> tuple[Bond, ...]:
 def highest_frequency(network: Network, members: Sequence[Member]) -> float:
     """Angular frequency [rad/s] of all bonds together: the largest at fixed inner springs."""
     directions = bond_directions(network, members)
-    coupling = np.zeros((len(directions), len(directions)))
-    for i, one in enumerate(directions):
-        for j, other in enumerate(directions):
-            for p in network.bodies:
-                if all(any(c.target == p for c, _ in d.forces) for d in (one, other)):
-                    response = _response(network, members, p, one, other)
-                    coupling[i, j] += math.sqrt(one.stiffness * other.stiffness) * response
     if not directions:
         return 0.0
+    coupling = np.zeros((len(directions), len(directions)))
+    stiffness = np.array([direction.stiffness for direction in directions])
+    for p in network.bodies:
+        on = [k for k, d in enumerate(directions) if any(c.target == p for c, _ in d.forces)]
+        responses = _responses(network, members[p], p, [directions[k] for k in on])
+        coupling[np.ix_(on, on)] += np.sqrt(np.outer(stiffness[on], stiffness[on])) * responses
     return math.sqrt(max(0.0, float(np.linalg.eigvalsh(0.5 * (coupling + coupling.T))[-1])))
 
 
@@ -186,33 +185,60 @@ def _slopes(element: Instance, forces: Sequence[Connection], kind: int) -> np.nd
     return matrix
 
 
-def _response(
-    network: Network, members: Sequence[Member], p: int, forced: Direction, along: Direction
-) -> float:
-    """Acceleration of a body along a bond per unit force along another [1/kg or 1/(kg.m2)]."""
-    forces = [(c.input, x) for c, x in forced.forces if c.target == p]
-    velocities = list(_velocities(network, p, along))
-    instance = members[p]
-    if isinstance(instance, StandIn):
-        return _surrogate_response(instance, forces, velocities)
-    block, kernels = instance.block, instance.component.kernels
-    declaration = instance.component.declaration
-    kept = block.copy()
-    count = declaration.state_count
+def _responses(
+    network: Network, member: Member, p: int, directions: Sequence[Direction]
+) -> np.ndarray:
+    """Accelerations of a body along bonds (columns) per unit force along each (rows).
+
+    In 1/kg or 1/(kg.m2).
+    """
+    velocities = [list(_velocities(network, p, direction)) for direction in directions]
+    names = list(dict.fromkeys(name for along in velocities for name, _ in along))
+    shares = np.zeros((len(names), len(directions)))
+    for column, along in enumerate(velocities):
+        for name, x in along:
+            shares[names.index(name), column] += x
+    rows = [
+        _accelerations(member, [(c.input, x) for c, x in d.forces if c.target == p], names)
+        for d in directions
+    ]
+    return np.reshape(rows, (len(directions), len(names))) @ shares
+
+
+def _accelerations(
+    member: Member, forces: Sequence[tuple[str, float]], names: Sequence[str]
+) -> np.ndarray:
+    """Rates of outputs of a body where inputs jump by so much, through the states."""
+    if isinstance(member, StandIn):
+        return _of_surrogate(member, forces, names)
+    block, kernels = member.block, member.component.kernels
+    declaration = member.component.declaration
+    count, kept = declaration.state_count, block[: declaration.mutable_size].copy()
     dx = [np.zeros(count), np.zeros(count)]
     for k in range(2):
         for name, value in forces if k else ():
             block[declaration.index[name]] += value
         kernels.rhs(block, 0.0, dx[k])
-    block[:] = kept
-    rows = [declaration.index[name] for name, _ in velocities]
+    block[: kept.size] = kept
+    rows = [declaration.index[name] for name in names]
     kernels.out(block, 0.0)
-    before = block[rows].copy()
+    before = block[rows]
     block[:count] += dx[1] - dx[0]
     kernels.out(block, 0.0)
-    after = block[rows].copy()
-    block[:] = kept
-    return float(np.dot([x for _, x in velocities], after - before))
+    after = block[rows]
+    block[: kept.size] = kept
+    return after - before
+
+
+def _of_surrogate(
+    body: StandIn, forces: Sequence[tuple[str, float]], names: Sequence[str]
+) -> np.ndarray:
+    """The same of a foreign body: dv/dt = c b f where v = c x and dx/dt = a x + b f."""
+    surrogate = body.surrogate
+    pushed = np.zeros(len(surrogate.inputs))
+    for name, x in forces:
+        pushed[surrogate.inputs.index(name)] += x
+    return surrogate.response(pushed)[[surrogate.outputs.index(name) for name in names]]
 
 
 def _velocities(network: Network, p: int, along: Direction) -> Iterator[tuple[str, float]]:
@@ -228,15 +254,3 @@ def _velocities(network: Network, p: int, along: Direction) -> Iterator[tuple[st
             found = rate_of(network.parts[p], given[place])
         if found is not None and force.target == p:
             yield found, x
-
-
-def _surrogate_response(
-    body: StandIn, forces: Sequence[tuple[str, float]], velocities: Sequence[tuple[str, float]]
-) -> float:
-    """As `_response`, of a foreign body: dv/dt = c b f where v = c x and dx/dt = a x + b f."""
-    surrogate = body.surrogate
-    pushed = np.zeros(len(surrogate.inputs))
-    for name, x in forces:
-        pushed[surrogate.inputs.index(name)] += x
-    rates = surrogate.response(pushed)
-    return float(sum(x * rates[surrogate.outputs.index(name)] for name, x in velocities))
