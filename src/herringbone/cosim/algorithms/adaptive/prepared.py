@@ -36,14 +36,9 @@ from herringbone.cosim.layouts.layout import Chunk
 from herringbone.cosim.layouts.measured import channel_outputs
 from herringbone.cosim.layouts.nodes import Buffers, Control, new_buffers
 from herringbone.cosim.layouts.starts import Starts
-from herringbone.cosim.loops.adaptive_step.ladder import (
-    RUNGS,
-    TICKS,
-)
+from herringbone.cosim.loops.adaptive_step.ladder import RUNGS, TICKS
 from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT, run_adaptive
-from herringbone.cosim.loops.adaptive_step.step_error import (
-    LARGEST,
-)
+from herringbone.cosim.loops.adaptive_step.step_error import LARGEST
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
 from herringbone.cosim.loops.nodes import REFRESH
 from herringbone.cosim.rows.record import Grid, GrowingRecord
