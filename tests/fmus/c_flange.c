@@ -2,7 +2,8 @@
    description. PART chooses what it is:
 
    ROTOR     inputs tau, drive (outputs phi, w): inertia with friction
-   SHAFT     inputs phi, w, drive (output tau): rotor behind a shaft; the angle is held in a step
+   SHAFT     inputs phi, w, drive, brake (output tau): rotor behind a shaft; the angle is held in a
+             step; the brake is described where a test wants it
    SLIDER    as SHAFT, but the angle runs on with w inside a step
    COUPLING  inputs a.phi, a.w, b.phi, b.w (outputs a.tau, b.tau): a massless spring-damper
    HUB       as COUPLING, with a hub of mass in the middle
@@ -112,7 +113,7 @@ static double torque_on(const Model *m, double phi) { /* on the mass inside */
         return given(m, 0) + r[1] - (FAULT == ACTIVE ? -1.0 : 1.0) * FRICTION * m->w;
     case SHAFT:
     case SLIDER:
-        return r[2] - shaft(m->phi - phi, m->w - given(m, 1));
+        return r[2] + r[3] - shaft(m->phi - phi, m->w - given(m, 1));
     case HUB:
         return -shaft(m->phi - given(m, 0), m->w - given(m, 1)) -
                shaft(m->phi - given(m, 2), m->w - given(m, 3));

@@ -2,14 +2,15 @@
 
 What drives or loads a foreign part from inside is an input that nothing feeds, or a parameter: a
 torque, a throttle, a slope. It is told by trials: with 0 in its place the part, held where it
-begins, gives next to nothing of what it gives with it. A part of this package is connected to such
-an input, which lets it rise from zero; a parameter cannot rise, as a line says.
+begins, gives next to nothing of what it gives with it. Where no input does so alone, several may
+together, as torques that add. A part of this package is connected to such an input, which lets it
+rise from zero; a parameter cannot rise, as a line says.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -34,6 +35,7 @@ _STEPS = 128
 _LEFT = 0.05
 """Of what a part gives with a set point, if that is what drives it."""
 _NAMES = re.compile(r"\W+")
+T = TypeVar("T")
 
 
 class Raised(NamedTuple):
@@ -62,6 +64,11 @@ class _SetPoint(NamedTuple):
     name: str
     unit: str | None
     value: float | None
+
+    @property
+    def is_input(self) -> bool:
+        """True if it can rise."""
+        return self.value is not None
 
 
 def raised(system: System, step: float) -> Raised:
@@ -112,7 +119,32 @@ def _driving(spec: PartSpec, network: Network, number: int, step: float) -> list
     if not points:
         return []
     whole = _peaks(spec, given, taken, h)
-    return [p for p in points if _drives(spec, p, given, taken, h, whole)]
+
+    def drive(tried: Sequence[_SetPoint]) -> bool:
+        """If the part gives next to nothing with 0 in the place of all of these."""
+        return _is_silent_without(spec, tried, given, taken, h, whole)
+
+    alone = [point for point in points if drive([point])]
+    if any(point.is_input for point in alone):
+        return alone
+    return alone + together([point for point in points if point.is_input], drive)
+
+
+def together(points: Sequence[T], drive: Callable[[Sequence[T]], bool]) -> list[T]:
+    """The fewest that drive a part together, found by leaving out one by one; [] if all do not.
+
+    Args:
+        points: of which none drives alone.
+        drive: tells if the part gives next to nothing without all of these.
+    """
+    left = list(points)
+    if len(left) < 2 or not drive(left):
+        return []
+    for point in points:
+        rest = [other for other in left if other is not point]
+        if drive(rest):
+            left = rest
+    return left
 
 
 def _candidates(spec: PartSpec, part: Part, given: Sequence[str]) -> Iterator[_SetPoint]:
@@ -138,16 +170,17 @@ def _is_number(value: float | str) -> bool:
         return False
 
 
-def _drives(
+def _is_silent_without(
     spec: PartSpec,
-    point: _SetPoint,
+    points: Sequence[_SetPoint],
     given: Sequence[str],
     taken: Sequence[str],
     h: float,
     whole: np.ndarray,
 ) -> bool:
-    """If a part gives next to nothing with 0 in the place of a set point."""
-    without = replace(spec, values={**spec.values, point.name: 0.0})
+    """If a part gives next to nothing with 0 in the place of set points."""
+    zeros = dict.fromkeys((point.name for point in points), 0.0)
+    without = replace(spec, values={**spec.values, **zeros})
     try:
         left = _peaks(without, given, taken, h)
     except EndedError:
@@ -177,7 +210,7 @@ def _outputs() -> dict[str, tuple[str, str]]:
 
 def _not_raised(point: _SetPoint) -> str:
     """Why a set point does not rise; "" if it can."""
-    if point.value is None:
+    if not point.is_input:
         return "it is a parameter, and cannot rise; an input could, in an FMU that has one for it"
     if point.unit is not None and point.unit not in _outputs():
         return (

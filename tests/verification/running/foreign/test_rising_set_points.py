@@ -10,7 +10,7 @@ import herringbone as hb
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.running import start
 from herringbone.running.gradual.fitted import fitted_ramp
-from herringbone.running.gradual.raised import raised
+from herringbone.running.gradual.raised import raised, together
 from herringbone.running.settling.stranger import NeverSettlesError
 from herringbone.scenes import Scene, Start
 
@@ -59,6 +59,27 @@ def test_an_input_that_drives_rises(system):
     part = found.system.part("motor_drive_rising")
     assert part.values["final_value"] == TORQUE
     assert ("motor_drive_rising.torque", "motor.drive") in found.system.connections
+
+
+@pytest.mark.parametrize("brake", [-60.0, 60.0])
+def test_torques_that_drive_together_rise(tmp_path, brake):
+    more = (
+        '<ScalarVariable name="brake" valueReference="3" causality="input">'
+        '<Real unit="N.m" start="0"/></ScalarVariable>'
+    )
+    text = description("SHAFT").replace("</ModelVariables>", f"{more}</ModelVariables>")
+    fmu = c_part(SOURCE, text, tmp_path, ("PART=SHAFT",), fmi=2)
+    values = {"motor.drive": TORQUE, "motor.brake": brake}
+    found = raised(read_system(driven(tmp_path, fmu)).with_values(values), STEP)
+    assert found.inputs == ("motor.drive", "motor.brake") and found.lines == ()
+    assert found.system.part("motor_brake_rising").values["final_value"] == brake
+
+
+@pytest.mark.parametrize(
+    ("needed", "found"), [("bd", "bd"), ("abcd", "abcd"), ("e", ""), ("be", "")]
+)
+def test_fewest_inputs_without_which_a_part_gives_nothing(needed, found):
+    assert "".join(together("abcd", lambda tried: set(needed) <= set(tried))) == found
 
 
 def test_nothing_rises_where_nothing_drives(system):
