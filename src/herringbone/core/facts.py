@@ -3,6 +3,8 @@
 from abc import ABC, abstractmethod
 from html import escape
 
+from herringbone.core.names import cut
+
 _IN_LINE = 60
 _IN_TABLE = 300
 
@@ -29,8 +31,3 @@ class Facts(ABC):
             if text
         )
         return f"<table><caption>{type(self).__name__}</caption><tbody>{rows}</tbody></table>"
-
-
-def cut(text: str, most: int) -> str:
-    """The text, or the beginning of one of more characters than that."""
-    return text if len(text) <= most else f"{text[: most - 3]}..."

@@ -50,7 +50,12 @@ def check_path(text: str, what: str) -> str:
 
 def shown(text: str, most: int = _SHOWN) -> str:
     """A text in quotes as messages show it: on one line, and cut if it is longer than `most`."""
-    return repr(text if len(text) <= most else text[: most - 3] + "...")
+    return repr(cut(text, most))
+
+
+def cut(text: str, most: int) -> str:
+    """The text, or the beginning of one of more characters than that."""
+    return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def meant(text: str, known: Iterable[str]) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Sequence
 
 from herringbone.core import Outcome
-from herringbone.core.facts import cut
+from herringbone.core.names import cut
 from herringbone.core.part import Part
 
 _SHOWN, _LONGEST = 2, 200

@@ -10,6 +10,7 @@ rise from zero; a parameter cannot rise, as a line says.
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -119,11 +120,7 @@ def _driving(spec: PartSpec, network: Network, number: int, step: float) -> list
     if not points:
         return []
     whole = _peaks(spec, given, taken, h)
-
-    def drive(tried: Sequence[_SetPoint]) -> bool:
-        """If the part gives next to nothing with 0 in the place of all of these."""
-        return _is_silent_without(spec, tried, given, taken, h, whole)
-
+    drive = partial(_is_silent_without, spec, given, taken, h, whole)
     alone = [point for point in points if drive([point])]
     if any(point.is_input for point in alone):
         return alone
@@ -172,13 +169,13 @@ def _is_number(value: float | str) -> bool:
 
 def _is_silent_without(
     spec: PartSpec,
-    points: Sequence[_SetPoint],
     given: Sequence[str],
     taken: Sequence[str],
     h: float,
     whole: np.ndarray,
+    points: Sequence[_SetPoint],
 ) -> bool:
-    """If a part gives next to nothing with 0 in the place of set points."""
+    """If a part gives next to nothing with 0 in the place of all of these set points."""
     zeros = dict.fromkeys((point.name for point in points), 0.0)
     without = replace(spec, values={**spec.values, **zeros})
     try:
