@@ -141,14 +141,16 @@ def node_references(
 def connected_outputs(
     network: Network, extra: Sequence[Sequence[str]] | None = None
 ) -> list[list[str]]:
-    """Outputs of each part that the loop reads: connected ones, rates of slow ones, extra ones."""
+    """Outputs of each part that the loop reads: connected ones, rates of slow ones, extra ones.
+
+    Each is there once: loops have arrays for as many as there are names.
+    """
     outputs: list[list[str]] = [[] for _ in network.parts]
     for c in network.connections:
         if c.output not in outputs[c.source]:
             outputs[c.source].append(c.output)
-    for p in network.slow:
-        outputs[p] += rates(network.parts[p], outputs[p])
-    for p, names in enumerate(extra or ()):
+    of_slow = [(p, rates(network.parts[p], outputs[p])) for p in network.slow]
+    for p, names in (*of_slow, *enumerate(extra or ())):
         outputs[p] += [name for name in names if name not in outputs[p]]
     return outputs
 
