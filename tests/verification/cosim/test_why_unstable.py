@@ -36,6 +36,12 @@ def test_why_names_the_bond_and_remedies_that_hold():
     assert diagnose(rig(), Jacobi(1), 0.98 * step) is None
 
 
+def test_no_step_is_to_blame_where_the_algorithm_adapts_it():
+    """`li:degree=3` is unstable at 735 us; with a tolerance it finds that, and goes below."""
+    assert diagnose(rig(), LI(3), 735e-6) is not None
+    assert diagnose(rig(), LI(3, tolerance=1e-3), 735e-6) is None
+
+
 WHY_AT = {
     GaussSeidel(2): (39.0, 36.9),
     Predict(): (70.0, 67.8),

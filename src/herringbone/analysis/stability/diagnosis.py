@@ -44,8 +44,8 @@ def diagnose(
 ) -> Diagnosis | None:
     """Why an algorithm is unstable at a step; None if the linear parts are stable there.
 
-    None also where nothing can be said: nothing stands for a foreign part, or a mesh is open at
-    the start.
+    None also where nothing can be said: nothing stands for a foreign part, a mesh is open at the
+    start, or the algorithm adapts its step, so that no step is to blame.
 
     Args:
         system: as it is started.
@@ -53,6 +53,8 @@ def diagnose(
         step: macro step [s].
         strangers: what stands for foreign parts.
     """
+    if algorithm.adaptive:
+        return None
     try:
         linear = network, members = linear_network(system, strangers=strangers)
         amplification = Amplification(*linear, algorithm)
