@@ -7,7 +7,7 @@ number of values that a step may change, then these values; the part provides it
 
 from numba import carray, types
 
-from herringbone.kernels.compiling.jit import c_function, reals_at
+from herringbone.kernels.compiling.jit import UNKNOWN_SIZE, c_function, reals_at
 
 OK, DISCARD = 0, 2
 _REALS = types.CPointer(types.float64)
@@ -17,14 +17,13 @@ _STATE = types.int32(_REALS, types.CPointer(types.int64))
 _RESTORE = types.int32(_REALS, _REALS)
 DO_STEP = types.int32(_REALS, types.float64, types.float64, types.int32)
 """Signature of fmi2DoStep."""
-_UNKNOWN_SIZE = 1  # bounds are not checked
 
 
 @c_function(_EXCHANGE)
 def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2SetReal."""
-    block = carray(memory, _UNKNOWN_SIZE)
-    reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
+    block = carray(memory, UNKNOWN_SIZE)
+    reference, value = carray(references, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
     for i in range(count):
         block[reference[i]] = value[i]
     return types.int32(0)
@@ -33,8 +32,8 @@ def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
 @c_function(_EXCHANGE)
 def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2GetReal."""
-    block = carray(memory, _UNKNOWN_SIZE)
-    reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
+    block = carray(memory, UNKNOWN_SIZE)
+    reference, value = carray(references, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
     for i in range(count):
         value[i] = block[reference[i]]
     return types.int32(0)
@@ -43,7 +42,7 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
 @c_function(_STATE)
 def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
     """fmi2GetFMUstate, into the memory that the handle already names."""
-    block, saved = carray(memory, _UNKNOWN_SIZE), carray(reals_at(handle, 0), _UNKNOWN_SIZE)
+    block, saved = carray(memory, UNKNOWN_SIZE), carray(reals_at(handle, 0), UNKNOWN_SIZE)
     for i in range(int(saved[0])):
         saved[1 + i] = block[i]
     return types.int32(0)
@@ -52,7 +51,7 @@ def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
 @c_function(_RESTORE)
 def set_state(memory, saved):  # noqa: ANN001, ANN201 (typed by _RESTORE)
     """fmi2SetFMUstate."""
-    block, saved_values = carray(memory, _UNKNOWN_SIZE), carray(saved, _UNKNOWN_SIZE)
+    block, saved_values = carray(memory, UNKNOWN_SIZE), carray(saved, UNKNOWN_SIZE)
     for i in range(int(saved_values[0])):
         block[i] = saved_values[1 + i]
     return types.int32(0)

@@ -26,7 +26,7 @@ from herringbone.cosim.nodal.memory import MEMORY_POINTER
 from herringbone.cosim.nodal.once import answer
 from herringbone.cosim.nodal.steps import end, expand, read, settle, take
 from herringbone.cosim.nodal.watch import measure_if_suspected
-from herringbone.kernels.compiling.jit import c_function
+from herringbone.kernels.compiling.jit import UNKNOWN_SIZE, c_function
 from herringbone.kernels.signals import STRIDE
 
 _EXCHANGE = types.int32(
@@ -34,7 +34,6 @@ _EXCHANGE = types.int32(
 )
 _STEP = types.int32(MEMORY_POINTER, types.float64, types.float64, types.int32)
 _STATE = types.int32(MEMORY_POINTER, types.int64)
-_UNKNOWN_SIZE = 1  # bounds are not checked
 
 
 @c_function(_EXCHANGE)
@@ -45,7 +44,7 @@ def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     if status > LAST_GOOD:
         return types.int32(status)
     part = whole[0]
-    reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
+    reference, value = carray(references, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
     given = carray(at_address(part.given), part.inputs * STRIDE, np.float64)
     driven = carray(at_address(part.driven), part.inputs, np.int64)
     for i in range(count):
@@ -59,7 +58,7 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     """fmi2GetReal, of outputs at nodes; before the first step those of the part."""
     whole = carray(memory, 1)
     part = whole[0]
-    reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
+    reference, value = carray(references, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
     kept = carray(at_address(part.values), part.outputs * STRIDE, np.float64)
     whole[0].read = 1
     status = settle(whole)

@@ -16,7 +16,7 @@ from herringbone.cosim.loops.calls import (
 )
 from herringbone.cosim.loops.calls import do_step as step_part
 from herringbone.cosim.loops.common import LAST_GOOD
-from herringbone.kernels.compiling.jit import allocating, c_function
+from herringbone.kernels.compiling.jit import UNKNOWN_SIZE, allocating, c_function
 
 MEMORY = np.dtype(
     [
@@ -60,7 +60,6 @@ _DERIVATIVES = types.int32(
     types.int64,
     types.CPointer(types.float64),
 )
-_UNKNOWN_SIZE = 1  # bounds are not checked
 
 
 @allocating
@@ -106,10 +105,10 @@ def _to_si(
 @c_function(_EXCHANGE)
 def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2SetReal."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
     part = whole[0]
     _call(whole, reference, count)
-    _to_own(whole, reference, count, carray(values, _UNKNOWN_SIZE), 1.0)
+    _to_own(whole, reference, count, carray(values, UNKNOWN_SIZE), 1.0)
     return types.int32(
         exchange_reals(part.set_real, part.component, part.called, count, part.values)
     )
@@ -118,8 +117,8 @@ def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
 @c_function(_EXCHANGE)
 def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2GetReal."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
-    part, found = whole[0], carray(values, _UNKNOWN_SIZE)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
+    part, found = whole[0], carray(values, UNKNOWN_SIZE)
     _call(whole, reference, count)
     status = exchange_reals(part.get_real, part.component, part.called, count, found.ctypes.data)
     if status <= LAST_GOOD:
@@ -130,10 +129,10 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
 @c_function(_DERIVATIVES)
 def set_derivatives(memory, references, count, orders, values):  # noqa: ANN001, ANN201
     """fmi2SetRealInputDerivatives."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
     part = whole[0]
     _call(whole, reference, count)
-    _to_own(whole, reference, count, carray(values, _UNKNOWN_SIZE), 0.0)
+    _to_own(whole, reference, count, carray(values, UNKNOWN_SIZE), 0.0)
     return types.int32(
         exchange_derivatives(
             part.set_derivatives, part.component, part.called, count, orders, part.values
@@ -144,8 +143,8 @@ def set_derivatives(memory, references, count, orders, values):  # noqa: ANN001,
 @c_function(_DERIVATIVES)
 def get_derivatives(memory, references, count, orders, values):  # noqa: ANN001, ANN201
     """fmi2GetRealOutputDerivatives."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
-    part, found = whole[0], carray(values, _UNKNOWN_SIZE)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
+    part, found = whole[0], carray(values, UNKNOWN_SIZE)
     _call(whole, reference, count)
     status = exchange_derivatives(
         part.get_derivatives, part.component, part.called, count, orders, found.ctypes.data

@@ -9,11 +9,10 @@ from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Component
 from herringbone.core.declaring.component import unbounded, unchanged
 from herringbone.kernels.compiling.dispatching import CFunction
-from herringbone.kernels.compiling.jit import c_code
+from herringbone.kernels.compiling.jit import UNKNOWN_SIZE, c_code
 
 FAST = {"hb_step", "hb_rhs", "hb_out", "hb_indicators", "hb_answer"}
 """Those that a simulation calls all the time; what they call is made for speed."""
-_UNKNOWN_SIZE = 2**40  # bounds are not checked, but views are cut at the end
 _REALS = types.CPointer(types.float64)
 _COUNTS = types.CPointer(types.int64)
 _REFERENCES = types.CPointer(types.uint32)
@@ -95,8 +94,8 @@ def _of_resources(of: Component) -> _Found:
     def load(values, shape, b, s, report):  # noqa: ANN001, ANN202
         return types.int32(
             kernels_load(
-                carray(values, (_UNKNOWN_SIZE,)),
-                carray(shape, (_UNKNOWN_SIZE,)),
+                carray(values, (UNKNOWN_SIZE,)),
+                carray(shape, (UNKNOWN_SIZE,)),
                 carray(b, (block,)),
                 carray(s, (scratch,)),
                 carray(report, (REPORT,)),
@@ -149,7 +148,7 @@ def _of_what_is_asked(of: Component) -> _Found:
     block, work, kernels_answer = of.declaration.size, _work(of), of.asked.answer
 
     def answer(b, w, t, references, count):  # noqa: ANN001, ANN202
-        places = carray(references, (_UNKNOWN_SIZE,))
+        places = carray(references, (UNKNOWN_SIZE,))
         kernels_answer(carray(b, (block,)), carray(w, (work,)), t, places, count)
 
     return {"hb_answer": (types.void(_REALS, _REALS, _TIME, _REFERENCES, types.int64), answer)}

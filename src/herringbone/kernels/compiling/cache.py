@@ -54,7 +54,8 @@ class _Locator(_CacheLocator):
     def get_cache_path(self) -> str:
         """A folder for each module, and each way of compiling it."""
         module = self._function.__module__.removeprefix("herringbone.")
-        return str(_kernels(cache_root()) / f"optimised-{int(config.OPT)}" / module)
+        how = f"optimised-{int(config.OPT)}" + "-checked" * bool(config.BOUNDSCHECK)
+        return str(_kernels(cache_root()) / how / module)
 
     def get_source_stamp(self) -> str:
         """Key of what it is compiled from."""

@@ -19,6 +19,9 @@ T = TypeVar("T")
 _C_OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy"}
 _OPTIONS = {**_C_OPTIONS, "fastmath": False, "nogil": True, "forceinline": False}
 """numba takes what is not set from whoever is being compiled: code would go by who calls first."""
+UNKNOWN_SIZE = 1 << 40
+"""Of an array that others give by its address alone: it cuts no view, and where bounds are checked
+no element is out of them."""
 _by_content: "WeakValueDictionary[str, KernelDispatcher]" = WeakValueDictionary()
 """Kernels of `inner_kept`, by name: two that are loaded at a time would share one's code."""
 

@@ -19,7 +19,7 @@ order; of m outputs the rates at its end follow the values.
 
 from numba import carray, types
 
-from herringbone.kernels.compiling.jit import c_function
+from herringbone.kernels.compiling.jit import UNKNOWN_SIZE, c_function
 from herringbone.kernels.fmi_calls import DISCARD, DO_STEP, OK
 
 HEADER = 7
@@ -28,7 +28,6 @@ KNOWN = 3
 """Length of what stands before the marks of what was read."""
 _SAME = 1e-9
 """Relative difference of lengths that are one: rounding of times."""
-_UNKNOWN_SIZE = 1  # bounds are not checked
 _REALS = types.CPointer(types.float64)
 _REFERENCES = types.CPointer(types.uint32)
 _EXCHANGE = types.int32(_REALS, _REFERENCES, types.size_t, _REALS)
@@ -38,7 +37,7 @@ _DERIVATIVES = types.int32(_REALS, _REFERENCES, types.size_t, types.CPointer(typ
 @c_function(DO_STEP)
 def answered_step(memory, time, step_size, no_set_before):  # noqa: ANN001, ANN201 (typed by DO_STEP)
     """A step of a known length; a discarded one where the length is not known."""
-    b = carray(memory, _UNKNOWN_SIZE)
+    b = carray(memory, UNKNOWN_SIZE)
     at, steps, p, m = int(b[0]), int(b[1]), int(b[2]), int(b[3])
     held = HEADER + steps * m
     count = held + steps * p + int(b[4])
@@ -69,12 +68,12 @@ def answered_step(memory, time, step_size, no_set_before):  # noqa: ANN001, ANN2
 @c_function(_EXCHANGE)
 def read_answers(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2GetReal; after which steps it is called is kept."""
-    b = carray(memory, _UNKNOWN_SIZE)
+    b = carray(memory, UNKNOWN_SIZE)
     at, steps, p, m = int(b[0]), int(b[1]), int(b[2]), int(b[3])
     now = int(b[HEADER + steps * (m + p) + int(b[4])])
     if now > 0:
         b[at + KNOWN + now - 1] = 1.0
-    reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
+    reference, value = carray(references, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
     for i in range(count):
         value[i] = b[reference[i]]
     return types.int32(OK)
@@ -83,10 +82,10 @@ def read_answers(memory, references, count, values):  # noqa: ANN001, ANN201 (ty
 @c_function(_DERIVATIVES)
 def set_input_derivatives(memory, references, count, orders, values):  # noqa: ANN001, ANN201
     """fmi2SetRealInputDerivatives, of the orders that there are; others are discarded."""
-    b = carray(memory, _UNKNOWN_SIZE)
+    b = carray(memory, UNKNOWN_SIZE)
     at, p, plain = int(b[0]), int(b[2]), int(b[5])
-    reference, order = carray(references, _UNKNOWN_SIZE), carray(orders, _UNKNOWN_SIZE)
-    value = carray(values, _UNKNOWN_SIZE)
+    reference, order = carray(references, UNKNOWN_SIZE), carray(orders, UNKNOWN_SIZE)
+    value = carray(values, UNKNOWN_SIZE)
     for i in range(count):
         if order[i] < 1 or (order[i] + 1) * plain > p:
             return types.int32(DISCARD)
@@ -98,12 +97,12 @@ def set_input_derivatives(memory, references, count, orders, values):  # noqa: A
 @c_function(_DERIVATIVES)
 def get_output_rates(memory, references, count, orders, values):  # noqa: ANN001, ANN201
     """fmi2GetRealOutputDerivatives, of the first order."""
-    b = carray(memory, _UNKNOWN_SIZE)
+    b = carray(memory, UNKNOWN_SIZE)
     at, steps, p, m, plain = int(b[0]), int(b[1]), int(b[2]), int(b[3]), int(b[6])
     now = int(b[HEADER + steps * (m + p) + int(b[4])])
     if now > 0:
         b[at + KNOWN + now - 1] = 1.0
-    reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
+    reference, value = carray(references, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
     for i in range(count):
         value[i] = b[reference[i] + plain]
     return types.int32(OK)

@@ -23,7 +23,7 @@ from herringbone.analysis.twin.core_part.stepping import (
     TIME,
     advance,
 )
-from herringbone.kernels.compiling.jit import c_function, finding, reals_at
+from herringbone.kernels.compiling.jit import UNKNOWN_SIZE, c_function, finding, reals_at
 
 _TABLE, _NODES = PLACES["table"], PLACES["nodes"]
 _STATE, _SIGNALS = PLACES["state"], PLACES["signals"]
@@ -36,7 +36,6 @@ _EXCHANGE = types.int32(_MEMORY, types.CPointer(types.uint32), types.size_t, _RE
 _DO_STEP = types.int32(_MEMORY, types.float64, types.float64, types.int32)
 _SAVE = types.int32(_MEMORY, types.CPointer(types.int64))
 _RESTORE = types.int32(_MEMORY, _REALS)
-_UNKNOWN_SIZE = 1  # bounds are not checked
 
 
 @finding
@@ -77,8 +76,8 @@ def restore(m: np.ndarray, saved: np.ndarray) -> None:
 @c_function(_EXCHANGE)
 def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2SetReal, of inputs at nodes."""
-    signals = _signals_at(carray(memory, _UNKNOWN_SIZE), _SIGNALS)
-    reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
+    signals = _signals_at(carray(memory, UNKNOWN_SIZE), _SIGNALS)
+    reference, value = carray(references, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
     for i in range(count):
         signals.given[reference[i]] = value[i]
     return types.int32(OK)
@@ -87,27 +86,27 @@ def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
 @c_function(_EXCHANGE)
 def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2GetReal, of outputs at nodes."""
-    reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
-    return types.int32(read(carray(memory, _UNKNOWN_SIZE), reference, count, value))
+    reference, value = carray(references, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
+    return types.int32(read(carray(memory, UNKNOWN_SIZE), reference, count, value))
 
 
 @c_function(_DO_STEP)
 def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed by _DO_STEP)
     """fmi2DoStep."""
-    return types.int32(advance(carray(memory, _UNKNOWN_SIZE), time, step))
+    return types.int32(advance(carray(memory, UNKNOWN_SIZE), time, step))
 
 
 @c_function(_SAVE)
 def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _SAVE)
     """fmi2GetFMUstate, into the memory that the handle already names."""
-    save(carray(memory, _UNKNOWN_SIZE), carray(reals_at(handle, 0), _UNKNOWN_SIZE))
+    save(carray(memory, UNKNOWN_SIZE), carray(reals_at(handle, 0), UNKNOWN_SIZE))
     return types.int32(OK)
 
 
 @c_function(_RESTORE)
 def set_state(memory, saved):  # noqa: ANN001, ANN201 (typed by _RESTORE)
     """fmi2SetFMUstate."""
-    restore(carray(memory, _UNKNOWN_SIZE), carray(saved, _UNKNOWN_SIZE))
+    restore(carray(memory, UNKNOWN_SIZE), carray(saved, UNKNOWN_SIZE))
     return types.int32(OK)
 
 

@@ -8,7 +8,7 @@ from herringbone.cosim.cell.calls.messages import LAST_GOOD, land, room, send
 from herringbone.cosim.cell.calls.operations import ask, ask_rates, begin, collected
 from herringbone.cosim.cell.calls.signals import INSTANCE_POINTER
 from herringbone.cosim.loops.calls import at_address
-from herringbone.kernels.compiling.jit import allocating, c_function
+from herringbone.kernels.compiling.jit import UNKNOWN_SIZE, allocating, c_function
 
 _DERIVATIVES = types.int32(
     INSTANCE_POINTER,
@@ -17,14 +17,13 @@ _DERIVATIVES = types.int32(
     types.CPointer(types.int32),
     types.CPointer(types.float64),
 )
-_UNKNOWN_SIZE = 1  # bounds are not checked
 
 
 @c_function(_DERIVATIVES)
 def set_derivatives(memory, references, count, orders, values):  # noqa: ANN001, ANN201
     """fmi2SetRealInputDerivatives; sent at once until an order is accepted."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
-    order, value = carray(orders, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
+    order, value = carray(orders, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
     number = int(count)
     status = room(whole, 3 * number)
     if status > LAST_GOOD:
@@ -57,8 +56,8 @@ def _same_rates(memory: np.ndarray, references: np.ndarray, orders: np.ndarray, 
 @c_function(_DERIVATIVES)
 def get_derivatives(memory, references, count, orders, values):  # noqa: ANN001, ANN201
     """fmi2GetRealOutputDerivatives: what came with the last step, or a message of its own."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
-    order, value = carray(orders, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
+    order, value = carray(orders, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
     part, number = whole[0], int(count)
     status = land(whole)
     if status > LAST_GOOD:

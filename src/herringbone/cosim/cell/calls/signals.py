@@ -20,7 +20,7 @@ from herringbone.cosim.cell.calls.operations import (
     step_now,
 )
 from herringbone.cosim.loops.calls import at_address
-from herringbone.kernels.compiling.jit import allocating, c_function
+from herringbone.kernels.compiling.jit import UNKNOWN_SIZE, allocating, c_function
 
 INSTANCE_POINTER = types.CPointer(from_dtype(INSTANCE))
 _EXCHANGE = types.int32(
@@ -28,14 +28,13 @@ _EXCHANGE = types.int32(
 )
 _STEP = types.int32(INSTANCE_POINTER, types.float64, types.float64, types.int32)
 _FINISH = types.int32(INSTANCE_POINTER, types.int64)
-_UNKNOWN_SIZE = 1  # bounds are not checked
 
 
 @c_function(_EXCHANGE)
 def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2SetReal."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
-    value, number = carray(values, _UNKNOWN_SIZE), int(count)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
+    value, number = carray(values, UNKNOWN_SIZE), int(count)
     status = room(whole, 2 * number)
     if status > LAST_GOOD:
         return types.int32(status)
@@ -102,7 +101,7 @@ def _read_now(memory: np.ndarray) -> int:
 @c_function(_EXCHANGE)
 def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2GetReal: what came with the last step, or a message of its own."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
     number = int(count)
     part = whole[0]
     if part.steps > 0:
@@ -122,7 +121,7 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     if status > LAST_GOOD:
         return types.int32(status)
     if part.status <= LAST_GOOD:
-        _give(whole, reference, number, carray(values, _UNKNOWN_SIZE))
+        _give(whole, reference, number, carray(values, UNKNOWN_SIZE))
     return types.int32(part.status)
 
 
@@ -161,8 +160,8 @@ def get_later(memory, references, count, values):  # noqa: ANN001, ANN201 (typed
         return types.int32(status)
     whole[0].batch = 1
     if number > 0:
-        given = carray(values, _UNKNOWN_SIZE)
-        ask_later(whole, carray(references, _UNKNOWN_SIZE), number, given.ctypes.data)
+        given = carray(values, UNKNOWN_SIZE)
+        ask_later(whole, carray(references, UNKNOWN_SIZE), number, given.ctypes.data)
     return types.int32(0)
 
 

@@ -19,7 +19,7 @@ from herringbone.cosim.fmu.fmi3.steps import any_discrete, enter_events, leave_e
 from herringbone.cosim.fmu.fmi3.within import POINTER
 from herringbone.cosim.loops.calls import at_address, c_call, of_state
 from herringbone.cosim.loops.common import LAST_GOOD
-from herringbone.kernels.compiling.jit import allocating, c_function
+from herringbone.kernels.compiling.jit import UNKNOWN_SIZE, allocating, c_function
 from herringbone.kernels.fmi_calls import OK
 
 _EXCHANGE = types.int32(
@@ -29,7 +29,6 @@ _STATE = types.int32(POINTER, types.int64)
 _DERIVATIVES = types.int32(
     POINTER, types.CPointer(types.uint32), types.size_t, types.int64, types.int64
 )
-_UNKNOWN_SIZE = 1  # bounds are not checked
 
 
 _derivatives = c_call("address", "address", "count", "address", "address", "count")
@@ -51,8 +50,8 @@ def _update(memory: np.ndarray, references: np.ndarray, count: int) -> int:
 @c_function(_EXCHANGE)
 def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2SetReal; what changes at events only is set at one."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
-    given = carray(values, _UNKNOWN_SIZE)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
+    given = carray(values, UNKNOWN_SIZE)
     part = whole[0]
     last = carray(at_address(part.values), part.count, np.float64)
     for i in range(count):
@@ -74,8 +73,8 @@ def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
 @c_function(_EXCHANGE)
 def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2GetReal."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
-    wanted = carray(values, _UNKNOWN_SIZE)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
+    wanted = carray(values, UNKNOWN_SIZE)
     part = whole[0]
     status = _update(whole, reference, count)
     last = carray(at_address(part.values), part.count, np.float64)
@@ -116,7 +115,7 @@ def free_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
 def get_derivatives(memory, references, count, orders, values):  # noqa: ANN001, ANN201
     """fmi2GetRealOutputDerivatives, of scalars; the others' number of values is refused."""
     part = carray(memory, 1)[0]
-    given = carray(references, _UNKNOWN_SIZE)
+    given = carray(references, UNKNOWN_SIZE)
     element = carray(at_address(part.elements), part.count, ELEMENT)
     reference = carray(at_address(part.references), part.count, np.uint32)
     for i in range(count):

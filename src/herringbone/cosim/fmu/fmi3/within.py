@@ -12,7 +12,7 @@ from numba import carray, from_dtype, types
 from herringbone.cosim.fmu.fmi3.memory import MEMORY, ORDERS
 from herringbone.cosim.fmu.fmi3.packing import exchange, pack
 from herringbone.cosim.loops.calls import at_address
-from herringbone.kernels.compiling.jit import allocating, c_function
+from herringbone.kernels.compiling.jit import UNKNOWN_SIZE, allocating, c_function
 from herringbone.kernels.fmi_calls import OK
 
 POINTER = types.CPointer(from_dtype(MEMORY))
@@ -28,7 +28,6 @@ _UPDATE = types.void(
     POINTER, types.float64, *[types.uint8] * 4, types.CPointer(types.uint8),
     types.CPointer(types.float64),
 )  # fmt: skip
-_UNKNOWN_SIZE = 1  # bounds are not checked
 _ERROR = 3
 _VALUE, _MEAN = 0, 1
 
@@ -49,8 +48,8 @@ def _listed(memory: np.ndarray, element: np.int64) -> bool:
 @c_function(_DERIVATIVES)
 def set_derivatives(memory, references, count, orders, values):  # noqa: ANN001, ANN201
     """fmi2SetRealInputDerivatives: they belong to the values that are set, and to the next step."""
-    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
-    order, given = carray(orders, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
+    whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
+    order, given = carray(orders, UNKNOWN_SIZE), carray(values, UNKNOWN_SIZE)
     part = whole[0]
     slope = carray(at_address(part.slopes), part.count * ORDERS, np.float64)
     start = carray(at_address(part.starts), part.count, np.float64)
