@@ -41,7 +41,7 @@ _d = Declaration(
         parameter("ramp_time_constant", "s", "of the set point", 1e-3, minimum=1e-4),
         parameter("efficiency", "1", "electrical to mechanical", 0.93, minimum=0.01, maximum=1),
         parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4,
-                  quantity=Quantity.MICRO_STEP),
+                  tunable=True, quantity=Quantity.MICRO_STEP),
     ],
     work=steppers.body_work(4, 2),
     roles=[Role.DRIVE],

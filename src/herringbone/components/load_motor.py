@@ -39,7 +39,7 @@ _d = Declaration(
         parameter("torque_time_constant", "s", "of the torque control", 5e-3, minimum=1e-4),
         parameter("efficiency", "1", "mechanical to electrical", 0.93, minimum=0.01, maximum=1),
         parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4,
-                  quantity=Quantity.MICRO_STEP),
+                  tunable=True, quantity=Quantity.MICRO_STEP),
     ],
     work=steppers.body_work(3, 2),
     roles=[Role.LOAD],

@@ -110,11 +110,21 @@ def test_what_is_set_by_name_stays(rig):
 def test_gear_pairs_may_take_longer_ones_up_to_what_is_stable(rig):
     """In the run, where they err little; not where one is set by name, nor where teeth part."""
     found = with_inner_steps(rig.system, 1e-5).stepping
-    assert found.parameters == {GEAR: found.longest}
+    assert found.parameters[GEAR] == found.longest
     assert found.most * found.longest == pytest.approx(stable_inner_steps(rig.system)[GEAR])
     by_name = with_inner_steps(rig.system.with_values({GEAR: 1e-6}), 1e-5).stepping
     kicked = with_inner_steps(rig.system, 1e-5, kicked=True).stepping
     assert (by_name[1:], kicked[1:]) == (({}, 1.0), ({}, 1.0))
+
+
+def test_rotors_follow_the_gear_pairs_and_shafts_that_swing_do_not(rig):
+    """All alike in the run; as many times longer as the pairs, and these alone where they are."""
+    found = with_inner_steps(rig.system, 1e-5)
+    assert found.stepping.parameters.keys() == {GEAR, MOTOR, "load_motor.micro_step"}
+    ship = with_inner_steps(prepared("ship", "loaded", Wishes()).system, 1e-5)
+    of = {ship.system.part(path.rpartition(".")[0]).component for path in ship.stepping.parameters}
+    assert of == {"gear_mesh", "rotating_inertia"}
+    assert f"{', '.join(ship.stepping.parameters)} up to" in ship.lines[0]
 
 
 def test_shorter_where_velocities_of_the_gears_are_recorded(rig):

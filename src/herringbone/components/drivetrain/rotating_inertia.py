@@ -35,7 +35,7 @@ _d = Declaration(
         parameter("inertia", "kg.m2", "moment of inertia", 1.0, minimum=1e-9,
                   quantity=Quantity.INERTIA),
         parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4,
-                  quantity=Quantity.MICRO_STEP),
+                  tunable=True, quantity=Quantity.MICRO_STEP),
     ],
     work=steppers.body_work(2, len(FLANGES)),
     roles=[Role.ROTOR],

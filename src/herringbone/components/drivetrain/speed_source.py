@@ -37,7 +37,7 @@ _d = Declaration(
         output("power", "W", "power that the source gives", feedthrough=("flange.tau",)),
         parameter("time_constant", "s", "of the speed behind its set point", 1e-2, minimum=1e-4),
         parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4,
-                  quantity=Quantity.MICRO_STEP),
+                  tunable=True, quantity=Quantity.MICRO_STEP),
     ],
     work=steppers.body_work(2, 2),
     roles=[Role.CONTROLLER],

@@ -20,7 +20,7 @@ from herringbone.components.registry import component
 from herringbone.core import Instance
 from herringbone.core.caching.remembered import Remembered
 from herringbone.core.declaring.roles import Quantity, Role
-from herringbone.core.declaring.variable import Causality
+from herringbone.core.declaring.variable import Causality, Variability, Variable
 from herringbone.core.places.part_path import PartPath, in_groups
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.layouts.inner_stepping import InnerStepping
@@ -57,9 +57,9 @@ class InnerSteps(NamedTuple):
 
     Attributes:
         system: with them.
-        stepping: the longest of gear pairs, or of all parts where there is none; gear pairs may
-            take longer ones while the run goes on, up to what is stable, where teeth do not part
-            and no velocities of gears are recorded.
+        stepping: the longest of gear pairs, or of all parts where there is none; parts of a system
+            with pairs may take longer ones while the run goes on, up to what is stable for pairs,
+            where teeth do not part and no velocities of gears are recorded.
         degree: of the forces' polynomials.
         lines: what they are, and why where that is not the tolerance.
     """
@@ -109,13 +109,18 @@ class _Chosen(NamedTuple):
 
 
 def _longer(system: System, found: _Chosen) -> tuple[Mapping[str, float], float]:
-    """Steps of gear pairs by path, if all are chosen, and how many times longer they may be."""
-    pairs = anatomy(system).with_role(Role.GEAR_PAIR)
-    paths = [path for part, path in _paths(system) if part in pairs]
-    if not found.most or not all(path in found.steps for path in paths):
+    """Steps by path, if those of all gear pairs are chosen, and times that they may be longer.
+
+    Tunable ones of other parts, which do not swing by themselves, follow if they may go as far.
+    """
+    known = anatomy(system).with_role(Role.GEAR_PAIR)
+    pairs = [path for part, path in _paths(system) if part in known]
+    if not pairs or not found.most or not all(path in found.steps for path in pairs):
         return {}, 1.0
-    steps = {path: found.steps[path] for path in paths}
-    return steps, min((found.most[path] / step for path, step in steps.items()), default=1.0)
+    times = {path: found.most[path] / step for path, step in found.steps.items()}
+    most = min(times[path] for path in pairs)
+    follow = [path for path in times if times[path] >= most and _is_tunable(system, path)]
+    return {path: found.steps[path] for path in follow}, most
 
 
 def _chosen(
@@ -146,8 +151,9 @@ def _chosen(
         said.append(f"{path} {1e6 * step:.3g} us" + f" ({reason})" * bool(reason))
     kept = part or _gears_are_recorded(system)
     found_steps = _Chosen(chosen, {} if kept else stable, degree, ())
-    _, times = _longer(system, found_steps)
-    more = f"; those of gear pairs up to {times:.3g} times longer where they err little"
+    longer, times = _longer(system, found_steps)
+    which = "" if len(longer) == len(chosen) else f"{', '.join(longer)} "
+    more = f"; {which}up to {times:.3g} times longer where they err little"
     line = f"inner steps: {', '.join(said)}" + more * (times > 1.0)
     return found_steps._replace(lines=(line,) if said else ())
 
@@ -185,9 +191,8 @@ def _stable(system: System, found: Linear | None) -> dict[str, float]:
     own = {member.name: member for member in members if isinstance(member, Instance)}
     steps = {}
     for part, path in _paths(system):
-        spec, variable = system.part(part), system.split(path)[1]
-        declared = component(str(spec.component)).declaration.variable(variable)
-        if variable not in spec.values:
+        declared = _declared(system, path)
+        if declared.name not in system.part(part).values:
             stable = stable_step(own[part]) if part in own else float(declared.start)
             steps[path] = min(stable, declared.maximum or stable)
     return steps
@@ -201,8 +206,16 @@ def _longest(system: System, chosen: dict[str, float]) -> float:
     return max((_value(system, path, chosen) for path in gears or paths.values()), default=0.0)
 
 
-def _value(system: System, path: str, chosen: dict[str, float]) -> float:
+def _declared(system: System, path: str) -> Variable:
     name, variable = system.split(path)
-    part = system.part(name)
-    declared = component(str(part.component)).declaration.variable(variable).start
-    return float(chosen.get(path, part.values.get(variable, declared)))
+    return component(str(system.part(name).component)).declaration.variable(variable)
+
+
+def _is_tunable(system: System, path: str) -> bool:
+    return _declared(system, path).variability is Variability.TUNABLE
+
+
+def _value(system: System, path: str, chosen: dict[str, float]) -> float:
+    declared = _declared(system, path)
+    values = system.part(system.split(path)[0]).values
+    return float(chosen.get(path, values.get(declared.name, declared.start)))
