@@ -8,6 +8,7 @@ are places in the table of variables.
 import numpy as np
 from numba import carray, from_dtype, types
 
+from herringbone.core.declaring.variable import NODES
 from herringbone.cosim.loops.calls import (
     at_address,
     exchange_derivatives,
@@ -35,6 +36,7 @@ MEMORY = np.dtype(
             "references",
             "factor",
             "offset",
+            "room",
             "called",
             "values",
         )
@@ -43,10 +45,14 @@ MEMORY = np.dtype(
 """What an adapter knows.
 
 component, and the addresses of the part's functions; count of variables; addresses of their
-references (uint32), factors and offsets (float64), and of the references (uint32) and values
-(float64) of the current call.
+references (uint32), factors and offsets (float64); how many values a call may have, which are up to
+ORDERS of each input, and addresses of the references (uint32) and values (float64) of the current
+call.
 """
+ORDERS = NODES
+"""Highest order of input derivatives: polynomials over a step have no higher degree."""
 
+_ERROR = 3
 _MEMORY = types.CPointer(from_dtype(MEMORY))
 _EXCHANGE = types.int32(
     _MEMORY, types.CPointer(types.uint32), types.size_t, types.CPointer(types.float64)
@@ -63,13 +69,16 @@ _DERIVATIVES = types.int32(
 
 
 @allocating
-def _call(memory: np.ndarray, references: np.ndarray, count: int) -> None:
-    """References of the part for those of this interface."""
+def _call(memory: np.ndarray, references: np.ndarray, count: int) -> bool:
+    """References of the part for those of this interface; False if there is no room for them."""
     part = memory[0]
+    if count > part.room:
+        return False
     own = carray(at_address(part.references), part.count, np.uint32)
-    called = carray(at_address(part.called), part.count, np.uint32)
+    called = carray(at_address(part.called), part.room, np.uint32)
     for i in range(count):
         called[i] = own[references[i]]
+    return True
 
 
 @allocating
@@ -80,7 +89,7 @@ def _to_own(
     part = memory[0]
     factor = carray(at_address(part.factor), part.count, np.float64)
     offset = carray(at_address(part.offset), part.count, np.float64)
-    own = carray(at_address(part.values), part.count, np.float64)
+    own = carray(at_address(part.values), part.room, np.float64)
     for i in range(count):
         k = references[i]
         own[i] = values[i]
@@ -107,7 +116,8 @@ def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     """fmi2SetReal."""
     whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
     part = whole[0]
-    _call(whole, reference, count)
+    if not _call(whole, reference, count):
+        return types.int32(_ERROR)
     _to_own(whole, reference, count, carray(values, UNKNOWN_SIZE), 1.0)
     return types.int32(
         exchange_reals(part.set_real, part.component, part.called, count, part.values)
@@ -119,7 +129,8 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     """fmi2GetReal."""
     whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
     part, found = whole[0], carray(values, UNKNOWN_SIZE)
-    _call(whole, reference, count)
+    if not _call(whole, reference, count):
+        return types.int32(_ERROR)
     status = exchange_reals(part.get_real, part.component, part.called, count, found.ctypes.data)
     if status <= LAST_GOOD:
         _to_si(whole, reference, count, found, 1.0)
@@ -131,7 +142,8 @@ def set_derivatives(memory, references, count, orders, values):  # noqa: ANN001,
     """fmi2SetRealInputDerivatives."""
     whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
     part = whole[0]
-    _call(whole, reference, count)
+    if not _call(whole, reference, count):
+        return types.int32(_ERROR)
     _to_own(whole, reference, count, carray(values, UNKNOWN_SIZE), 0.0)
     return types.int32(
         exchange_derivatives(
@@ -145,7 +157,8 @@ def get_derivatives(memory, references, count, orders, values):  # noqa: ANN001,
     """fmi2GetRealOutputDerivatives."""
     whole, reference = carray(memory, 1), carray(references, UNKNOWN_SIZE)
     part, found = whole[0], carray(values, UNKNOWN_SIZE)
-    _call(whole, reference, count)
+    if not _call(whole, reference, count):
+        return types.int32(_ERROR)
     status = exchange_derivatives(
         part.get_derivatives, part.component, part.called, count, orders, found.ctypes.data
     )

@@ -67,15 +67,16 @@ class SiPart(PartAdapter):
 
     def _make_memory(self, signals: Sequence[PartVariable]) -> np.ndarray:
         rules = np.array([self._rules[v.name] for v in signals]).reshape(-1, 2)
+        room = calls.ORDERS * len(signals)
         self._arrays = {
             "references": np.array([v.reference for v in signals], np.uint32),
             "factor": rules[:, 0].copy(),
             "offset": rules[:, 1].copy(),
-            "called": np.zeros(len(signals), np.uint32),
-            "values": np.zeros(len(signals)),
+            "called": np.zeros(room, np.uint32),
+            "values": np.zeros(room),
         }
         memory = np.zeros(1, calls.MEMORY)
-        memory["count"] = len(signals)
+        memory["count"], memory["room"] = len(signals), room
         for name, array in self._arrays.items():
             memory[name] = array.ctypes.data
         for name, address in self.part.addresses._asdict().items():
