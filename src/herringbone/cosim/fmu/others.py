@@ -17,6 +17,8 @@ from herringbone.cosim.fmu.values import INTEGERS, number
 from herringbone.cosim.fmu.variables import Element, read_others
 
 _WORDS = {"true": True, "1": True}
+_Place = tuple[str, int]
+"""What follows `get` and `set` of a variable, and its value reference."""
 
 
 class OtherValues:
@@ -29,19 +31,19 @@ class OtherValues:
     def __init__(self, model: ModelDescription) -> None:
         self._fmi3 = is_fmi3(model)
         self._elements: dict[str, Element] = {e.name: e for e in read_others(model)}
-        self._kept: dict[int, list[Value]] = {}
+        self._kept: dict[_Place, list[Value]] = {}
         self._plans: dict[tuple[str, ...], list[tuple[str, list[int], list[str]]]] = {}
 
     def write(self, slave: Any, values: Mapping[str, Value]) -> None:  # noqa: ANN401 (fmpy)
         """Set variables, one call for each; raises FMICallException."""
-        touched: dict[int, ModelVariable] = {}
+        touched: dict[_Place, None] = {}
         for name, value in values.items():
             element = self._elements[name]
             self._last(element)[element.place] = value
-            touched[element.variable.valueReference] = element.variable
-        for reference, variable in touched.items():
-            setter = getattr(slave, f"set{self._function(variable)}")
-            setter([reference], self._kept[reference])
+            touched[self._place(element)] = None
+        for place in touched:
+            function, reference = place
+            getattr(slave, f"set{function}")([reference], self._kept[place])
 
     def last(self, name: str) -> Value:
         """What a variable was set to last, or its declared start value."""
@@ -78,16 +80,17 @@ class OtherValues:
 
     def _plan(self, names: tuple[str, ...]) -> list[tuple[str, list[int], list[str]]]:
         """By type: function, value references of the variables, and names of their elements."""
-        by_type: dict[str, dict[int, Element]] = {}
+        by_type: dict[str, dict[int, Element]] = {}  # by first element: aliases share a reference
         for name in names:
             element = self._elements[name]
             function = self._function(element.variable)
-            by_type.setdefault(function, {})[element.variable.valueReference] = element
+            by_type.setdefault(function, {})[element.first] = element
         every = list(self._elements.values())
         found = []
         for function, variables in by_type.items():
             own = [e.name for v in variables.values() for e in every[v.first : v.first + v.size]]
-            found.append((function, list(variables), own))
+            references = [v.variable.valueReference for v in variables.values()]
+            found.append((function, references, own))
         return found
 
     def _function(self, variable: ModelVariable) -> str:
@@ -96,12 +99,16 @@ class OtherValues:
             return variable.type
         return "Int64" if self._fmi3 else "Integer"
 
+    def _place(self, element: Element) -> _Place:
+        """Where a variable is: in FMI 2.0 each type has value references of its own."""
+        return self._function(element.variable), element.variable.valueReference
+
     def _last(self, element: Element) -> list[Value]:
         """Values of a variable that were set last; at first those that it declares."""
-        reference = element.variable.valueReference
-        if reference not in self._kept:
-            self._kept[reference] = _start(element)
-        return self._kept[reference]
+        place = self._place(element)
+        if place not in self._kept:
+            self._kept[place] = _start(element)
+        return self._kept[place]
 
 
 def _start(element: Element) -> list[Value]:
