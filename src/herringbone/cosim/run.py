@@ -115,8 +115,15 @@ class Run:
         return self._recording(done, outcome, wall, cpu)
 
     def _first_row(self) -> None:
-        """Record the start."""
-        get_all(self.prepared.layout, self.history, self.record.values, 0)
+        """Record the start; a part may refuse outputs before its first step."""
+        refused = get_all(self.prepared.layout, self.history, self.record.values, 0)
+        if refused >= 0:
+            name = self.network.parts[refused].name
+            self.notes = (
+                *self.notes,
+                f"{name} refuses to give all of its outputs before its first step: at 0 s what "
+                "nothing is connected to is recorded as NaN",
+            )
         self.others.sample(1)
 
     def _until_others(self, done: int, count: int) -> int:
@@ -138,11 +145,11 @@ class Run:
 
     def _correct_start(self) -> None:
         """Add to the first values of connected outputs what they lack."""
-        names = connected_outputs(self.network)
-        keys = [(p, name) for p, outputs in enumerate(names) for name in outputs]
-        layout = self.prepared.layout
-        for i, key in enumerate(keys if self.start_offsets else ()):
-            offset = self.start_offsets.get(key, 0.0)
+        names, layout = connected_outputs(self.network), self.prepared.layout
+        for (p, name), offset in self.start_offsets.items():
+            if name not in names[p]:
+                continue
+            i = layout.output_first[p] + names[p].index(name)  # rates follow, which predict reads
             self.history[0, i] += offset
             self.record.values[0, layout.output_record[i]] += offset
 

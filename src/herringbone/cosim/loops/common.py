@@ -180,12 +180,22 @@ def get_outputs(layout: Layout, history: np.ndarray, p: int, records: np.ndarray
 
 @inlined
 def get_all(layout: Layout, history: np.ndarray, records: np.ndarray, row: int) -> int:
-    """Get the outputs of all parts, recorded in a row; FMI status."""
+    """Get the outputs of all parts, recorded in a row; -1, or the first part that refuses some.
+
+    Of such a part connected outputs are read alone, and all others are NaN in the row.
+    """
+    refused = -1
     for p in range(layout.component.size):
-        status = get_outputs(layout, history, p, records, row)
-        if status > LAST_GOOD:
-            return status
-    return 0
+        if get_outputs(layout, history, p, records, row) <= LAST_GOOD:
+            continue
+        refused = p if refused < 0 else refused
+        records[row, layout.record_first[p] : layout.record_first[p + 1]] = np.nan
+        known = get_outputs(layout, history, p, records, -1) <= LAST_GOOD
+        for i in range(layout.output_first[p], layout.output_first[p + 1]):
+            if not known:
+                history[0, i] = np.nan
+            records[row, layout.output_record[i]] = history[0, i]
+    return refused
 
 
 @inlined
