@@ -102,10 +102,11 @@ class Fmi3:
         self.steps.append((instance, time, step, no_set_before))
         self.held.append(copy.deepcopy(self.values))
         for at in self.asks_at:
-            early_return, end = c_uint8(), c_double()
+            early_return, end = c_uint8(170), c_double()  # an FMU may not have set it
             BACK(within.update.address)(
-                self.memory.ctypes.data, at, 1, 0, 0, 0, byref(early_return), byref(end)
+                self.memory.ctypes.data, at, 1, 0, 0, 1, byref(early_return), byref(end)
             )
+            assert early_return.value == 0
             self.held.append(copy.deepcopy(self.values))
         assert (event[0], terminate[0], early[0]) == (False, False, False)
         result = self.step_results.pop(0) if len(self.step_results) > 1 else self.step_results[0]

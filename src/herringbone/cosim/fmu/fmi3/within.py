@@ -102,9 +102,11 @@ def begin_step(memory: np.ndarray, time: float, step: float) -> None:
 
 @c_function(_UPDATE)
 def update(memory, time, asks, may_get, finished, may_return, early, end):  # noqa: ANN001, ANN201
-    """fmi3IntermediateUpdateCallback."""
-    whole = carray(memory, 1)
+    """fmi3IntermediateUpdateCallback; an early return is never asked for, which is to be said."""
+    whole, asked = carray(memory, 1), carray(early, 1)
     part = whole[0]
+    if asked.ctypes.data != 0:
+        asked[0] = 0
     if asks != 0 and part.bent > 0:
         part.asked += 1
         _give(whole, time - part.began, _VALUE)
