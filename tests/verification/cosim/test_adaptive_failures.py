@@ -138,3 +138,28 @@ def test_tolerance_out_of_range(tolerance):
 def test_two_tolerances_are_refused():
     with pytest.raises(ParameterError, match=r"but the algorithm is li:.*tolerance=0.01"):
         with_tolerance(LI(tolerance=1e-2), 1e-3)
+
+
+class Noise(Ramp):
+    """A force of which no two values have to do with each other."""
+
+    def step(self, t, h):
+        values = np.random.default_rng(self.steps).standard_normal(max(self.degree, 1))
+        self.write("flange.f", values.tolist())
+        return OK
+
+
+def test_a_chain_that_is_measured_by_what_is_recorded_alone():
+    """No force comes back, so that there is no unknown to blame: it ended with an IndexError."""
+    system = System(
+        "chain",
+        "",
+        (PartSpec("noise"), PartSpec("mass")),
+        (("noise.flange.f", "mass.load.f"),),
+        channels={"force": ("noise.flange.f",)},
+    )
+    parts = [Noise("noise", 1.0), Mass("mass", 1.0, acceleration=True)]
+    grid = make_grid(4.0, 0.1, 0.1)
+    found = simulate(system, parts, LI(tolerance=1e-6), grid)
+    assert found.outcome.completed
+    assert any(note.startswith("what is recorded misses the tolerance") for note in found.notes)

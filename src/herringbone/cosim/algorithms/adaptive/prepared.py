@@ -253,10 +253,16 @@ class PreparedAdaptive(PreparedNodes):
         if self._adaptive is None:
             return STEP_LIMIT
         adaptive = self._adaptive
-        p, name = self.jacobian.owners[self.nodes.unknown[int(adaptive.state[CULPRIT])]]
-        if not self._aimed.double(f"{self.network.parts[p].name}.{name}", t, self._grid.step):
+        if not self._aimed.double(self._culprit(adaptive), t, self._grid.step):
             self.problem = self._aimed.missed
             return STEP_LIMIT
         adaptive.state[MISSED_NOW] = 0
         self._adaptive = adaptive._replace(tolerance=self._aimed.now)
         return DONE
+
+    def _culprit(self, adaptive: Adaptive) -> str:
+        """Who errs most of the unknowns; where there is none, channels alone are measured."""
+        if not self.nodes.unknown.size:
+            return "what is recorded"
+        p, name = self.jacobian.owners[self.nodes.unknown[int(adaptive.state[CULPRIT])]]
+        return f"{self.network.parts[p].name}.{name}"
