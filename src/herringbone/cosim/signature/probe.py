@@ -113,7 +113,7 @@ def _by_trials(
         inner_tick=inner,
         given=given,
         rate_inputs=rate,
-        speeds=() if inner else inner_speeds(lab, feedthrough, given, rate),
+        speeds=() if inner or tick else inner_speeds(lab, feedthrough, given, rate),
     )
 
 

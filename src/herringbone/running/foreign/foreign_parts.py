@@ -51,6 +51,8 @@ def alike(part: Part, made: Part) -> Part:
     """A new part, as the coupling takes another one of the same FMU."""
     if isinstance(part, NodalPart):
         return part.in_front_of(made)
+    if isinstance(part, WithoutStates):
+        made = WithoutStates(made)
     made.has_states, made.variables = part.has_states, part.variables
     return made
 
@@ -74,6 +76,7 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
     lines += _contradictions(part.variables, signature)
     held = part.addresses.set_derivatives or signature.tick or part.one_step
     if held or _loops_without_end(part, signature):
+        part = part if signature.restores is not False else WithoutStates(part)
         part.has_states = signature.kind is not Kind.ELEMENT
         part.variables = _measured(part.variables, signature)
         if isinstance(part, FmuPart | CellPart | PartAdapter):

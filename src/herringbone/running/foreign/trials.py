@@ -6,8 +6,7 @@ from contextlib import AbstractContextManager
 import numpy as np
 
 from herringbone.core import FmuError
-from herringbone.core.declaring.declaration import is_node
-from herringbone.core.part import Part
+from herringbone.core.part import Part, is_signal_node
 from herringbone.core.process.activity import activity
 from herringbone.core.wording import option
 from herringbone.cosim.fmu.opening import has_further
@@ -135,7 +134,7 @@ def _reals(part: Part, causality: str) -> list[str]:
     return [
         name
         for name, v in part.variables.items()
-        if v.causality == causality and v.is_real and not is_node(name)
+        if v.causality == causality and v.is_real and not is_signal_node(part.variables, name)
     ]
 
 
