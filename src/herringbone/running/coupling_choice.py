@@ -117,7 +117,9 @@ def way_of(
     elif asked.probe and system.connections:
         trial = asked.step or (algorithm or LI()).start_step
         parts, found = understood(exchanging, opened, instances, trial)
-        lines += [*found, *unfed(exchanging, parts)]
+        lines += found
+    if system.connections:
+        lines += unfed(exchanging, parts)
     if algorithm is None:
         algorithm, why = choose_algorithm(parts, wanted)
         lines.append(why)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from herringbone.analysis.steady_search import SCALE
 from herringbone.components.registry import COMPONENTS, component
-from herringbone.core import EquilibriumError
+from herringbone.core import EquilibriumError, ParameterError
 from herringbone.core.process.activity import activity
 from herringbone.core.wording import option, setting
 from herringbone.cosim.structure.system import System, Values
@@ -40,7 +40,7 @@ def started(
         HerringboneError: a value is wrong, or there is no equilibrium.
     """
     system = system.with_values(scene.values)
-    notes, start = system.notes, scene.start
+    notes, start = (*system.notes, *_without_effect(system)), scene.start
     if start is not Start.REST and len(system.foreign_parts) == len(system.parts):
         notes += ("all parts are foreign; the run starts with the values that they declare",)
         start = Start.REST
@@ -161,6 +161,20 @@ def equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:
         return start_of_known(known_parts(system))
 
 
+def _without_effect(system: System) -> Iterator[str]:
+    """A line on values of connected inputs of own parts, if any are set."""
+    ends = [end for connection in system.connections for end in connection]
+    found = [
+        f"{part.name}.{name}"
+        for part in system.parts
+        for name in (part.values if part.component else ())
+        if name in {v.name for v in component(str(part.component)).declaration.inputs}
+        and any(f"{part.name}.{name}.".startswith(f"{end}.") for end in ends)
+    ]
+    if found:
+        yield f"not used: {', '.join(found)}: what is connected there gives other values"
+
+
 def _dropped(system: System, found: Values) -> Iterator[str]:
     """A line on states that a user set and the steady rotation has otherwise, if any."""
     lost = []
@@ -191,7 +205,14 @@ def _offsets(system: System, offsets: Values) -> Values:
         instance, variable = system.split(path)
         part = system.part(instance)
         start = part.values.get(variable)
-        if start is None and part.component:
-            start = COMPONENTS[part.component].declaration.variable(variable).start
+        if part.component:
+            declaration = COMPONENTS[part.component].declaration
+            declared = declaration.variable(variable)
+            if declared not in declaration.states:
+                raise ParameterError(
+                    f"start_offset: {path}: {variable} of {part.component} is no state; it has: "
+                    f"{', '.join(v.name for v in declaration.states)}"
+                )
+            start = declared.start if start is None else start
         found[f"{instance}.{variable}"] = float(start or 0.0) + float(offset)
     return found

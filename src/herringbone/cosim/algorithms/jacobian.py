@@ -15,6 +15,9 @@ PREDICTION = 2
 """Degree of the prediction; one correction makes the result nearly independent of it."""
 ALIKE = 1e-6
 """A repeated step may differ by this share of the largest signal of the same unit."""
+NOTHING = 1e-9
+"""Below this, in SI units, signals of a unit are rounding of what stands still: the reference of
+levels of velocity (ISO 1683)."""
 _CHANGE = 1e-4
 
 
@@ -89,7 +92,7 @@ class InterfaceJacobian:
         largest = np.abs(buffers.nodes).max(axis=0, initial=0.0)
         by_kind = np.zeros(self._kind.max(initial=-1) + 1)
         np.maximum.at(by_kind, self._kind, largest)
-        wrong = off > ALIKE * by_kind[self._kind]
+        wrong = off > ALIKE * np.maximum(by_kind, NOTHING)[self._kind]
         for p in (*self.network.bodies, *self.network.elements):
             for i, (owner, name) in enumerate(self.owners):
                 if owner == p and wrong[i]:

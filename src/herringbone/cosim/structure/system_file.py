@@ -127,6 +127,8 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
         else:
             inner = read_system(table["system"], (*_outer, folder))
             nested[name] = inner.with_values(_set(table, folder)).nested_as(name)
+    if not parts and not nested:
+        raise StructureError(f"{file}: it has no parts; 'herringbone template system' shows some")
     return _assemble(data, file, parts, nested)
 
 
