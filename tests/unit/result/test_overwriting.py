@@ -175,3 +175,14 @@ def test_a_full_disk_is_one_line(rig, tmp_path, monkeypatch, call):
             assert len(found.data) in {0, len(rig.data)}
             assert np.array_equal(found.data.to_numpy(), rig.data.to_numpy()[: len(found.data)])
     assert 0 < failures < 99
+
+
+def test_files_of_no_run_are_not_replaced_unasked(tmp_path):
+    """Whatever else is in the folder stays, and stands in nobody's way."""
+    (tmp_path / "notes.txt").touch()
+    claim = Claim(tmp_path, True, "k", {})
+    assert claimed(claim) == tmp_path
+    (tmp_path / "results.csv").touch()
+    with pytest.raises(HerringboneError, match=r"holds results\.csv of no run, which"):
+        claimed(claim)
+    assert claimed(replace(claim, overwrite=True)) == tmp_path

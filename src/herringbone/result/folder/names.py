@@ -15,6 +15,8 @@ SUMMARY, TEXT = "summary.json", "summary.txt"
 OLD = ".before"
 """Ends the name of the last checkpoint but one."""
 _REPORT = (TABLE, UNITS, PARQUET, SUMMARY, TEXT)
+REPLACED = (ROWS, OTHERS, *_REPORT)
+"""Files that a run replaces, beside its pictures."""
 _PICTURES = (
     "overview", "bearing_forces", "seat_velocities", "spectra", "torques", "radiated_power",
 )  # fmt: skip

@@ -10,7 +10,7 @@ from herringbone.core import HerringboneError, ResourceError
 from herringbone.core.errors import reason
 from herringbone.core.places.files import is_file
 from herringbone.core.wording import option
-from herringbone.result.folder.names import SUMMARY, State
+from herringbone.result.folder.names import REPLACED, SUMMARY, State
 from herringbone.result.folder.run_file import read_run_file
 
 try:
@@ -78,9 +78,13 @@ def _taken(folder: Path, claim: Claim) -> _Taken | None:
     except ResourceError as error:
         return _Taken(f"holds a run that cannot be read ({error}); use another folder, or {anew}")
     if found is None:
-        old = is_file(folder / SUMMARY)
-        what = f"holds results of an older version; choose another folder, or {anew}"
-        return _Taken(what) if old else None
+        if is_file(folder / SUMMARY):
+            return _Taken(f"holds results of an older version; choose another folder, or {anew}")
+        others = [name for name in REPLACED if is_file(folder / name)]
+        what = (
+            f"holds {', '.join(others)} of no run, which would be replaced; choose another folder"
+        )
+        return _Taken(f"{what}, or {anew}") if others else None
     if found.key != claim.key:
         names = [n for n, d in claim.settings.items() if found.settings.get(n) != d]
         return _Taken(
