@@ -11,10 +11,20 @@ from herringbone.core.reading.xml import LARGEST_XML, parse_xml
 from herringbone.cosim.ssp.content import Content
 from herringbone.cosim.ssp.format import NAMESPACES, PARAMETER_TYPE, local_name, qualified
 
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+"""Words of xs:boolean."""
+
+
+def _boolean(text: str) -> int:
+    if text.strip() not in _BOOLEANS:
+        raise ValueError(text)
+    return int(_BOOLEANS[text.strip()])
+
+
 _TYPES: Mapping[str, Callable[[str], float | str]] = {
     "Real": number,
     "Integer": whole,
-    "Boolean": lambda text: int(text in {"true", "1"}),
+    "Boolean": _boolean,
     "String": str,
     "Enumeration": lambda text: int(text) if text.isdecimal() else text,
     "Binary": str,

@@ -55,11 +55,20 @@ def read_stop_time(file: str | Path) -> float | None:
     """
     file = Path(file)
     experiment = read_structure(file).find("ssd:DefaultExperiment", NAMESPACES)
-    text = None if experiment is None else experiment.get("stopTime")
-    try:
-        return None if text is None else number(text)
-    except ValueError:
-        raise StructureError(f"{file}: stopTime = '{text}' is no number") from None
+    if experiment is None:
+        return None
+    found = {}
+    for name in ("startTime", "stopTime"):
+        text = experiment.get(name)
+        try:
+            found[name] = None if text is None else number(text)
+        except ValueError:
+            raise StructureError(f"{file}: {name} = '{text}' is no number") from None
+    if found["startTime"]:
+        raise StructureError(
+            f"{file}: startTime = {found['startTime']:g} s: runs begin at 0 s; change the file"
+        )
+    return found["stopTime"]
 
 
 @dataclass(frozen=True)
@@ -167,6 +176,8 @@ class _Reader(Content):
             for child in element:
                 if local_name(child) not in {"ConnectionGeometry", "Annotations"}:
                     raise self.refusal(f"{where}: {local_name(child)} is not supported")
+            if element.get("suppressUnitConversion", "false").strip() not in {"false", "0"}:
+                raise self.refusal(f"{where}: suppressUnitConversion is not supported")
             first, second = (
                 self.path_here(f"{part}.{name}") if part is not None else Outside(str(name), "")
                 for part, name in ends
