@@ -1,6 +1,7 @@
 """A table as CSV or Parquet, written piece by piece."""
 
 import csv
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
@@ -46,6 +47,14 @@ def write_csv(
             stream.write(_text_of(np.ascontiguousarray(piece.to_numpy(dtype=float))))
         else:
             writer.writerows(zip(*(piece[name].tolist() for name in columns), strict=True))
+
+
+def records_of(table: pd.DataFrame) -> list[dict[str, Any]]:
+    """Rows of a table for JSON, with all digits; what is not finite is None."""
+    return [
+        {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}
+        for row in table.to_dict("records")
+    ]
 
 
 def _text_of(rows: np.ndarray) -> str:

@@ -1,6 +1,7 @@
 """The command `modes`: natural frequencies, participation, Campbell diagram and shapes."""
 
 import argparse
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -72,7 +73,9 @@ def run(options: argparse.Namespace) -> int:
         say(f"note: {note}")
     written = _write(found, options) if options.output else []
     if options.json:
-        show(found.table.to_json(orient="records"))
+        from herringbone.result.tables import records_of  # noqa: PLC0415 (pandas: lazy)
+
+        show(json.dumps(records_of(found.table)))
     else:
         tail = ["", f"Files: {', '.join(map(str, written))}"] if written else []
         show("\n".join([*lines(found, options.highest), *tail]))

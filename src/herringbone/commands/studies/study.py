@@ -57,6 +57,9 @@ def _text(found: "Report") -> str:
 
 
 def _json(found: "Report") -> str:
-    findings = json.loads(found.findings.to_json(orient="records"))
+    from herringbone.result.tables import records_of  # noqa: PLC0415 (pandas: lazy)
+
     files = [str(file) for file in found.files]
-    return json.dumps({"findings": findings, "failed": found.failed, "files": files})
+    return json.dumps(
+        {"findings": records_of(found.findings), "failed": found.failed, "files": files}
+    )
