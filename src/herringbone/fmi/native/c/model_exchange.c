@@ -83,7 +83,7 @@ Status instance_get_continuous_states(Instance *instance, double states[], size_
 }
 
 Status instance_get_nominals(Instance *instance, double nominals[], size_t count) {
-    if (!in(instance, ANY_MODE | 1u << PHASE_TERMINATED))
+    if (!in(instance, ANY_MODE | 1u << PHASE_INSTANTIATED | 1u << PHASE_TERMINATED))
         return instance_refuse(instance, "getNominalsOfContinuousStates");
     if (count != hb_component.exchanged_count)
         return refuse_length(instance, "states", count, hb_component.exchanged_count);

@@ -12,7 +12,11 @@ uint8_t hb_wide;
 /* When the library is loaded, before any instance. Intel 64 and IA-32 Architectures Software
    Developer's Manual, volume 1, section 14.3: the processor has the vectors, and the system saves
    them. */
+#if defined _WIN32
+void find_wide(void) { /* by the entry point: nothing else calls constructors there */
+#else
 __attribute__((constructor)) static void find_wide(void) {
+#endif
     unsigned a, b, c, d, low, high;
     if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & SAVES_STATE) || !(c & HAS_AVX))
         return;

@@ -8,9 +8,17 @@
 
 int _fltused; /* compilers name it in whatever has floating-point numbers */
 
-/* There is nothing to start up. */
+#if defined(__x86_64__)
+void find_wide(void); /* wide.c */
+#else
+static void find_wide(void) {}
+#endif
+
+/* All that there is to start up. */
 BOOL WINAPI DllMainCRTStartup(HINSTANCE library, DWORD reason, LPVOID reserved) {
-    (void)library, (void)reason, (void)reserved;
+    (void)library, (void)reserved;
+    if (reason == DLL_PROCESS_ATTACH)
+        find_wide();
     return TRUE;
 }
 
