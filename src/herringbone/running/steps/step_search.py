@@ -80,7 +80,8 @@ def searched(
         system, scene: see `coupled`.
         asked: of the coupling; its step is the first one.
         tolerance: relative error of the group of channels that errs most [1].
-        progress, recorded: see `coupled`; the records of each better run replace those before.
+        progress, recorded: see `coupled`; called with each run, and with the one that is returned
+            again if it was not the last.
 
     Returns:
         The last run that ended well, with its verification; a note says which step was found, or
@@ -110,7 +111,11 @@ def searched(
             step = others.pop(0)
             continue
         step = found.recording.step / float(search.pieces())
-    found = search.told() if search.tried else found
+    if search.tried:
+        best = search.tried[-1].found
+        if recorded and found is not best:
+            recorded(best.result)
+        found = search.told()
     return found._replace(result=with_row(judged(found.result, system, None), asked.left_out))
 
 

@@ -33,8 +33,11 @@ def test_shorter_steps_are_tried_until_parts_take_them(tmp_path):
 @pytest.mark.parametrize("options", [{}, {"tolerance": 1e-3}])
 def test_usual_steps_are_tried_where_parts_take_one_length_only(tmp_path, options):
     """0.1 ms, which nothing proposes. Second order: 82 Hz, 122 steps in a period."""
-    result = searched(drivetrain(tmp_path, 2, steps="1e-4 1e-4"), **options)
+    folder = tmp_path / "results"
+    result = searched(drivetrain(tmp_path, 2, steps="1e-4 1e-4"), output=folder, **options)
     assert result.outcome.completed
+    # Runs with shorter steps fail after it, and their rows stood beside its summary.
+    np.testing.assert_array_equal(hb.load(folder).data.to_numpy(), result.data.to_numpy())
     assert result.info.communication_step == pytest.approx(1e-4, rel=1e-6)
     assert speed_error(result) < (2 * np.pi * 82 * 1e-4) ** 2
     assert any("its error is not known: " in note for note in result.info.notes)
