@@ -71,11 +71,11 @@ def frd_text(frequency, shapes, coordinates, *, generalised=True, short=False):
     return "\n".join([*lines, " 9999", ""])
 
 
-def text_2414(frequency, shapes):
+def text_2414(frequency, shapes, *, result=8):
     for n, f in enumerate(frequency):
         yield from ["    -1", "  2414", f"{n + 1:10d}", "MODE", f"{1:10d}"]
         yield from ["NONE"] * 5
-        yield "".join(f"{x:10d}" for x in (1, 2, 2, 8, 2, 3))
+        yield "".join(f"{x:10d}" for x in (1, 2, 2, result, 2, 3))
         yield "".join(f"{x:10d}" for x in (0, 0, 0, 0, 0, n + 1, 0, 0))
         yield "".join(f"{x:10d}" for x in (0, 0))
         w2 = (2 * np.pi * f) ** 2

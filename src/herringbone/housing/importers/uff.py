@@ -99,7 +99,7 @@ def _mode(item: Mapping[str, Any]) -> tuple[float, float, np.ndarray, np.ndarray
     if item["type"] == 55:
         return _mode_55(item)
     if item["type"] == 2414 and item["analysis_type"] == _NORMAL:
-        return _mode_2414(item)
+        return _mode_2414(item) if item["result_type"] in _DISPLACEMENT else None
     return None
 
 

@@ -113,6 +113,8 @@ def test_uff_2414_to_its_digits(pyuff, write_uff, seats, model):
     path = write_uff()
     with path.open("a") as file:
         file.write("\n".join(text_2414(frequency, shapes)) + "\n")
+        for other in (2, 9, 11, 12):  # stress, reaction force, velocity, acceleration
+            file.write("\n".join(text_2414(frequency, 1e5 * shapes, result=other)) + "\n")
     found = read_uff(path, read_seats(seats))
     np.testing.assert_allclose(found.frequency, frequency, rtol=5.1e-6)
     np.testing.assert_allclose(found.shapes, shapes, rtol=5.1e-6)
