@@ -135,3 +135,20 @@ def test_a_long_run_shows_its_end_and_an_overview(tmp_path):
     assert np.array_equal(np.vstack(list(table.reals(7))), wave)
     overview = table.overview()["a"]
     assert (overview.min(), overview.max()) == (wave[:, 1].min(), wave[:, 1].max())
+
+
+def test_a_complete_run_whose_rows_are_cut_off_is_none(tmp_path):
+    """One row may be missing: the end need not be a multiple of the time between rows."""
+    result = make_foreign_result()
+    write_report(result, tmp_path)
+    file = tmp_path / "results.npy"
+    row = 8 * len(result.data.columns)
+    for lost, fails in ((row, False), (200 * row, True)):
+        os.truncate(file, os.path.getsize(file) - lost)  # noqa: PTH202
+        if fails:
+            with pytest.raises(
+                ResourceError, match=r"its rows end at 0\.598 s, and the run did at"
+            ):
+                hb.load(tmp_path)
+        else:
+            assert len(hb.load(tmp_path).data) == 500

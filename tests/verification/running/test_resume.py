@@ -145,6 +145,24 @@ def test_killed_while_the_report_is_written(tmp_path, monkeypatch):
     assert found_in(folder) == whole
 
 
+def test_killed_before_a_further_run_told_the_error(tmp_path, capsys, monkeypatch):
+    """Its rows are whole, and its files are written; but it is not what was asked for."""
+    folder = tmp_path / "killed"
+
+    def die(*arguments):
+        raise Killed
+
+    with monkeypatch.context() as patched:
+        patched.setattr("herringbone.running.prepared_runs.verified", die)
+        with pytest.raises(Killed):
+            main([*RIG, "--algorithm=li:degree=3", "--verify", "-o", str(folder)])
+    for _ in range(2):
+        assert main(["run", "--resume", str(folder)]) == 2
+        said = capsys.readouterr().err
+        assert "the process ended before its error was known" in said
+    assert (folder / "results.csv").is_file()
+
+
 @pytest.mark.parametrize("kilobytes", [0, 1, 60, 400, 600, 2000])
 def test_a_disk_that_is_full(tmp_path, capsys, monkeypatch, kilobytes):
     """No file may be larger: one line, rows that are those of a whole run, and more of them later.

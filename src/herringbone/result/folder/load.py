@@ -9,7 +9,7 @@ import pandas as pd
 from herringbone.core import Outcome, OutcomeKind, ResourceError
 from herringbone.core.places.files import is_file
 from herringbone.core.reading.structured import read_json
-from herringbone.result.folder.names import STUDY, SUMMARY, TABLE, State
+from herringbone.result.folder.names import ROWS, STUDY, SUMMARY, TABLE, State
 from herringbone.result.folder.result_file import result_of
 from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.stored_table import stored_table
@@ -17,6 +17,8 @@ from herringbone.result.result import TIME, Result
 from herringbone.result.run_info import RunInfo
 
 _UNITS = "# units: "
+_LACKING = 1.5
+"""Times between rows that may lie between the last one and the end."""
 
 
 def load(folder: str | Path) -> Result:
@@ -40,7 +42,20 @@ def load(folder: str | Path) -> Result:
         result = result_of(run.result, table.all(), run.units)
     except (TypeError, ValueError, KeyError, AttributeError) as error:
         raise ResourceError(f"{folder}: its run.json is damaged: {error}") from error
-    return _cut_off(result, run, folder) if run.state is State.RUNNING else result
+    if run.state is State.RUNNING:
+        return _cut_off(result, run, folder)
+    _check_rows(result, folder)
+    return result
+
+
+def _check_rows(result: Result, folder: Path) -> None:
+    """Check that the rows of a complete run reach its end, but for one."""
+    end, last = result.outcome.time, float(result.data[TIME].iloc[-1]) if len(result.data) else 0.0
+    if result.outcome.completed and last < end - _LACKING * result.info.record_step:
+        raise ResourceError(
+            f"{folder}: its rows end at {last:.6g} s, and the run did at {end:.6g} s: {ROWS} is "
+            "cut off; run it again"
+        )
 
 
 def _cut_off(result: Result, run: RunFile, folder: Path) -> Result:

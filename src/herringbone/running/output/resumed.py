@@ -93,5 +93,24 @@ def to_resume(folder: Path) -> Resumed | Result:
         )
     finally:
         store.close()
-    write_summary(result, folder, store.run, complete=True)
+    further = _further(run, result)
+    write_summary(result, folder, store.run, complete=not further)
+    if further:
+        raise HerringboneError(
+            f"{folder}: its files are written, but the process ended before {further} was known, "
+            f"which takes further runs; begin anew with {option('overwrite', True)}"
+        )
     return result
+
+
+def _further(run: RunFile, result: Result) -> str:
+    """What was asked for that a first run does not tell; "" if nothing was."""
+    found = [
+        text
+        for name, text in (("verify", "its error"), ("reference", "its error against the twin"))
+        if run.asked.get(name)
+    ]
+    foreign = any(str(kind).endswith(".fmu") for kind in result.info.model.values())
+    if foreign and run.asked.get("tolerance"):
+        found.append("whether it meets the tolerance")
+    return " and ".join(found)
