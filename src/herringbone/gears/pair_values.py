@@ -45,7 +45,7 @@ def pair_values(job: GearJob) -> tuple[PairValues, tuple[str, ...]]:
         shaft_radial=(shafts[0].radial, shafts[1].radial),
         shaft_axial=(shafts[0].axial, shafts[1].axial),
         shaft_torsional=(shafts[0].torsional, shafts[1].torsional),
-        base_helix_angle=abs(pair.base_helix_angle),
+        base_helix_angle=pair.base_helix_angle,
         working_pressure_angle=pair.working_transverse_pressure_angle,
         face_width=pair.face_width,
         backlash=backlash,

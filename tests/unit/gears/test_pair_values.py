@@ -35,6 +35,11 @@ def test_shipped_values_are_those_of_the_shipped_file():
     assert values_source() == VALUES_FILE.read_text(encoding="utf-8")
 
 
+def test_the_hand_of_the_left_half_is_kept():
+    one, other = (of(gear_pair(THESIS, helix_angle=sign * 0.5))[0] for sign in (1.0, -1.0))
+    assert other.base_helix_angle == -one.base_helix_angle < 0.0
+
+
 def test_geometry_of_a_pair_with_profile_shift():
     """Base radius z m_t cos(alpha_t) / 2; the centre distance is the pair's working one."""
     pair = gear_pair(SHIFTED)

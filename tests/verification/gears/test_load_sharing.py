@@ -117,3 +117,13 @@ def test_definitions_of_the_stiffness():
 def test_bad_input(mesh, torque, axial, message):
     with pytest.raises(ParameterError, match=message):
         load_sharing(mesh, torque, 1e-6, **axial)
+
+
+def test_the_other_hand_loads_the_other_half():
+    """The sign of the helix angle is the hand of the left half, which mirrors the halves."""
+    other = SliceMesh(gear_pair(THESIS, helix_angle=-PAIR.helix_angle), slices=30)
+    one = SliceMesh(gear_pair(THESIS, helix_angle=PAIR.helix_angle), slices=30)
+    held = {"pinion_axial_stiffness": 1e9, "phases": 8}
+    left, right = (load_sharing(m, 200.0, 5e-6, **held).share_left for m in (one, other))
+    assert left > 0.8
+    assert right == pytest.approx(1.0 - left, abs=1e-3)

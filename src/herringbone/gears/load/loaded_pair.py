@@ -116,11 +116,7 @@ def loaded_pair(
         wheel_axial_stiffness=symmetry.wheel_axial_stiffness,
         phases=phases.size,
     )
-    shift = (
-        symmetry.deviation
-        * math.tan(abs(pair.base_helix_angle))
-        / pair.transverse_base_pitch
-    )  # fmt: skip
+    shift = symmetry.deviation * math.tan(pair.base_helix_angle) / pair.transverse_base_pitch
     left = _half(phases + shift, found.force_left, found.deflection_left)
     right = _half(phases - shift, found.force_right, found.deflection_right)
     return LoadedPair(pair, torque, phases, (left, right), found.axial_shift)

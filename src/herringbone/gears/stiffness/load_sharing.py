@@ -152,7 +152,7 @@ def load_sharing(
     """
     _check(mesh.pair, torque, pinion_axial_stiffness, wheel_axial_stiffness, shaft_compliance)
     pair, at = mesh.pair, np.arange(phases) / phases
-    angle = abs(pair.base_helix_angle)
+    angle = pair.base_helix_angle  # its sign is the hand
     sine, shift = math.sin(angle), symmetry_deviation * math.tan(angle) / pair.transverse_base_pitch
     laws = mesh.law(at + shift), mesh.law(at - shift)
     force = torque / (pair.base_radius[0] * math.cos(angle))
