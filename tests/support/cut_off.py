@@ -41,6 +41,18 @@ def summary_of(folder):
     return {name: summary[name] for name in COUNTED}
 
 
+def killed_at(folder, arguments, monkeypatch, function):
+    """A run that is killed when it calls a function."""
+
+    def die(*arguments):
+        raise Killed
+
+    with monkeypatch.context() as patched:
+        patched.setattr(function, die)
+        with pytest.raises(Killed):
+            main([*arguments, "-o", str(folder)])
+
+
 def killed(folder, arguments, monkeypatch, appends):
     """A run that is killed when it writes its n-th block of rows."""
     own, left = RowFile.append, [appends]

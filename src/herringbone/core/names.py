@@ -4,7 +4,7 @@ Names of an FMU's variables are not among them: they are data of any form that F
 """
 
 import re
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Sequence
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
@@ -56,6 +56,12 @@ def shown(text: str, most: int = _SHOWN) -> str:
 def cut(text: str, most: int) -> str:
     """The text, or the beginning of one of more characters than that."""
     return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def first_of(texts: Sequence[str], most: int) -> str:
+    """The first texts, and how many more there are."""
+    more = f" and {len(texts) - most} more" if len(texts) > most else ""
+    return f"{', '.join(texts[:most])}{more}"
 
 
 def meant(text: str, known: Iterable[str]) -> str:

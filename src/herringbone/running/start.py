@@ -6,6 +6,7 @@ from dataclasses import replace
 from herringbone.analysis.steady_search import SCALE
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import EquilibriumError, ParameterError
+from herringbone.core.names import first_of
 from herringbone.core.process.activity import activity
 from herringbone.core.wording import option, setting
 from herringbone.cosim.structure.system import System, Values
@@ -164,13 +165,12 @@ def equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:
 def _without_effect(system: System) -> Iterator[str]:
     """A line on values of connected inputs of own parts, if any are set."""
     ends = [end for connection in system.connections for end in connection]
-    found = [
-        f"{part.name}.{name}"
-        for part in system.parts
-        for name in (part.values if part.component else ())
-        if name in {v.name for v in component(str(part.component)).declaration.inputs}
-        and any(f"{part.name}.{name}.".startswith(f"{end}.") for end in ends)
-    ]
+    given: list[str] = []
+    for part in system.parts:
+        if part.component:
+            inputs = {v.name for v in component(part.component).declaration.inputs}
+            given += [f"{part.name}.{name}" for name in part.values if name in inputs]
+    found = [path for path in given if any(f"{path}.".startswith(f"{end}.") for end in ends)]
     if found:
         yield f"not used: {', '.join(found)}: what is connected there gives other values"
 
@@ -190,9 +190,8 @@ def _dropped(system: System, found: Values) -> Iterator[str]:
             there = float(value) if abs(float(value)) > _NOTHING * size else 0.0
             lost.append(f"{path} = {float(given):.6g} {unit} (it is {there:.6g} there)")
     if lost:
-        more = f" and {len(lost) - _SHOWN} more" if len(lost) > _SHOWN else ""
         yield (
-            f"not used: {', '.join(lost[:_SHOWN])}{more}: the start is the steady rotation, which "
+            f"not used: {first_of(lost, _SHOWN)}: the start is the steady rotation, which "
             "decides on all states; set what commands them, add by start_offset, or use "
             f"{option('start', Start.REST.value)}"
         )

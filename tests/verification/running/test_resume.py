@@ -10,7 +10,7 @@ import time
 
 import numpy as np
 import pytest
-from support.cut_off import Killed, found_in, killed, ran, taken_up, write_often
+from support.cut_off import found_in, killed, killed_at, ran, taken_up, write_often
 
 import herringbone as hb
 from herringbone.commands.main import main
@@ -132,14 +132,7 @@ def test_killed_while_the_report_is_written(tmp_path, monkeypatch):
     monkeypatch.setattr(drawn, lambda result, folder: pytest.fail("it draws"))
     whole = ran(tmp_path / "whole", options)
     folder = tmp_path / "killed"
-
-    def die(*arguments):
-        raise Killed
-
-    with monkeypatch.context() as patched:
-        patched.setattr("herringbone.running.reporting.report.write_csv", die)
-        with pytest.raises(Killed):
-            main([*options, "-o", str(folder)])
+    killed_at(folder, options, monkeypatch, "herringbone.running.reporting.report.write_csv")
     assert hb.load(folder).outcome.completed
     assert main(["run", "--resume", str(folder)]) == 0
     assert found_in(folder) == whole
@@ -148,14 +141,8 @@ def test_killed_while_the_report_is_written(tmp_path, monkeypatch):
 def test_killed_before_a_further_run_told_the_error(tmp_path, capsys, monkeypatch):
     """Its rows are whole, and its files are written; but it is not what was asked for."""
     folder = tmp_path / "killed"
-
-    def die(*arguments):
-        raise Killed
-
-    with monkeypatch.context() as patched:
-        patched.setattr("herringbone.running.prepared_runs.verified", die)
-        with pytest.raises(Killed):
-            main([*RIG, "--algorithm=li:degree=3", "--verify", "-o", str(folder)])
+    options = [*RIG, "--algorithm=li:degree=3", "--verify"]
+    killed_at(folder, options, monkeypatch, "herringbone.running.prepared_runs.verified")
     for _ in range(2):
         assert main(["run", "--resume", str(folder)]) == 2
         said = capsys.readouterr().err

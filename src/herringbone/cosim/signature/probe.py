@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from herringbone.core.names import first_of
 from herringbone.core.part import PartVariable
 from herringbone.cosim.signature.amplitudes import RATIO, amplitude
 from herringbone.cosim.signature.feedthrough.at_start import SAME, feedthrough_of, runs_on
@@ -229,9 +230,7 @@ def _note_answers(
         return
     deaf = [name for name, d in zip(lab.inputs, pulse.delay.T, strict=True) if (d < 0).all()]
     if deaf:
-        more = f" and {len(deaf) - _SHOWN} more" if len(deaf) > _SHOWN else ""
-        names = ", ".join(deaf[:_SHOWN])
-        found.note(f"no output answers {names}{more} at the start values of the others")
+        found.note(f"no output answers {first_of(deaf, _SHOWN)} at the start values of the others")
     for number, name in enumerate(lab.inputs):
         late = pulse.delay[:, number]
         if late.max(initial=-1) > 0:

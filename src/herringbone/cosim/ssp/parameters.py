@@ -11,14 +11,14 @@ from herringbone.core.reading.xml import LARGEST_XML, parse_xml
 from herringbone.cosim.ssp.content import Content
 from herringbone.cosim.ssp.format import NAMESPACES, PARAMETER_TYPE, local_name, qualified
 
-_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+_BOOLEANS = {"true": 1, "1": 1, "false": 0, "0": 0}
 """Words of xs:boolean."""
 
 
 def _boolean(text: str) -> int:
-    if text.strip() not in _BOOLEANS:
+    if (word := text.strip()) not in _BOOLEANS:
         raise ValueError(text)
-    return int(_BOOLEANS[text.strip()])
+    return _BOOLEANS[word]
 
 
 _TYPES: Mapping[str, Callable[[str], float | str]] = {

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
 
+from herringbone.core.names import first_of
 from herringbone.core.part import Part, is_signal_node
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import PartSpec, System
@@ -67,9 +68,8 @@ def _held_ends(part: Part, fed: AbstractSet[str]) -> Iterator[str]:
     """Of an element: ports whose motion nobody gives."""
     ports = dict.fromkeys(name.rpartition(".")[0] for name in _open(part, fed))
     if ends := [port for port in ports if port]:
-        more = f" and {len(ends) - _SHOWN} more" if len(ends) > _SHOWN else ""
         yield (
-            f"{part.name}: nothing is joined to {', '.join(ends[:_SHOWN])}{more}, which stands "
+            f"{part.name}: nothing is joined to {first_of(ends, _SHOWN)}, which stands "
             "still, as if it were held"
         )
 

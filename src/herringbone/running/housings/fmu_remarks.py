@@ -8,6 +8,7 @@ from herringbone.analysis.finding import Finding, Verdict
 from herringbone.analysis.housing.contract import of_energy
 from herringbone.analysis.housing.runs import VARIABLES
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, StructureError
+from herringbone.core.names import first_of
 from herringbone.cosim.cell.policy import policy
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.structure.system import System
@@ -56,9 +57,8 @@ def refuse_other_kinds(system: System, part: str, fmu: Path) -> None:
         )
     wanted = [v for v in VARIABLES if any(v == name or v.startswith(f"{name}.") for name in joined)]
     if missing := [v for v in wanted if v not in known]:
-        more = f" and {len(missing) - _SHOWN} more" if len(missing) > _SHOWN else ""
         raise StructureError(
-            f"{part}: {fmu} lacks {', '.join(missing[:_SHOWN])}{more}, of the {len(wanted)} "
+            f"{part}: {fmu} lacks {first_of(missing, _SHOWN)}, of the {len(wanted)} "
             f"variables by which {system.name} joins a housing; see 'herringbone check {fmu} --as "
             "housing'"
         )
