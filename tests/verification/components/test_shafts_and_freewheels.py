@@ -103,3 +103,30 @@ def test_an_engaged_freewheel_is_a_shaft_coupling():
     found = instance(FREEWHEEL, **values)
     assert found["torque"] == pytest.approx(6e4 * 4e-3 + 5.0 * 1.0)
     assert found["flange_a.tau"] == -found["torque"] == -found["flange_b.tau"]
+
+
+def test_a_freewheel_that_drives_does_not_slip():
+    """A twist that swings by half of itself, faster than sprags let go: the torque follows it."""
+    found, step, omega = instance(FREEWHEEL, damping=0.0, flange_a__phi=1e-3), 1e-5, 2e3 * np.pi
+    torque = []
+    for t in step * np.arange(1, 201):
+        found.set("flange_a.phi", 1e-3 + 0.5e-3 * np.sin(omega * t))
+        found.set("flange_a.w", 0.5e-3 * omega * np.cos(omega * t))
+        found.step(t - step, step)
+        torque.append(found["torque"])
+    assert found["free_angle"] == 0.0
+    assert (min(torque), max(torque)) == pytest.approx((0.5e-3 * 6e4, 1.5e-3 * 6e4), rel=1e-3)
+
+
+def test_a_freewheel_that_is_overrun_gives_back_what_its_twist_holds():
+    """The work on its flanges is k z^2 / 2, up to Euler's sum of 1e-6 s steps."""
+    found, step, speed, work = instance(FREEWHEEL, damping=0.0, flange_a__phi=1e-3), 1e-6, -10.0, 0
+    found.set("flange_a.w", speed)
+    for t in step * np.arange(1, 301):
+        before = found["torque"]
+        found.set("flange_a.phi", 1e-3 + speed * t)
+        found.step(t - step, step)
+        work -= 0.5 * (before + found["torque"]) * speed * step
+    assert work == pytest.approx(0.5 * 6e4 * 1e-6, rel=1e-3)
+    assert found["torque"] == 0.0
+    assert found["free_angle"] < 0.0

@@ -1,14 +1,15 @@
 """Freewheel: flange a drives flange b through a spring, and b may overrun a.
 
     z = phi_a - phi_b - free_angle,   w_rel = w_a - w_b
-    z' = max(w_rel, -z / release_time),   so that free_angle' = min(0, w_rel + z / release_time)
+    free_angle' = min(0, z) / release_time,   so that z' = w_rel - min(0, z) / release_time
     torque = max(0, stiffness z + damping r w_rel) where z > 0, else 0
     r = v^2 (3 - 2 v),   v = min(1, z / engagement_angle)
     tau_a = -torque,   tau_b = +torque
 
-z is the twist of the engaged sprags. While a drives, free_angle is constant and this is a shaft
-coupling; when b overruns, z dies out and free_angle follows it, so that the freewheel engages
-again wherever b stops to overrun. Damping rises smoothly with the engagement and never pulls.
+z is the twist of the sprags. While a drives (z > 0), free_angle is constant and this is a shaft
+coupling. When b overruns, z goes below 0 and free_angle follows, release_time behind: z becomes
+w_rel release_time. So the freewheel engages again wherever b stops to overrun, and no torque acts
+meanwhile. Damping rises smoothly with the engagement and never pulls.
 
 Left out: drag while overrunning, the inertia of the sprags, slip at overload.
 
@@ -35,7 +36,7 @@ _d = Declaration(
         *coupled_flanges(),
         output("torque", "N.m", "torque handed from a to b", feedthrough=MOTION,
                quantity=Quantity.TORQUE),
-        output("twist", "rad", "of the engaged sprags, z",
+        output("twist", "rad", "of the sprags, z; below 0: b overruns",
                feedthrough=("flange_a.phi", "flange_b.phi")),
         output("w_rel", "rad/s", "speed of a over b", feedthrough=("flange_a.w", "flange_b.w")),
         output("twist_rate", "rad/s", "rate of the twist, z'", feedthrough=MOTION, steady="zero"),
@@ -44,7 +45,7 @@ _d = Declaration(
         parameter("damping", "N.m.s/rad", "torsional, engaged", 5.0, minimum=0,
                   quantity=Quantity.DAMPING),
         parameter("engagement_angle", "rad", "twist at which damping is full", 1e-4, minimum=1e-9),
-        parameter("release_time", "s", "in which the sprags let go", 1e-3, minimum=1e-4),
+        parameter("release_time", "s", "by which the free angle follows an overrun", 1e-3, minimum=1e-4),
         parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4,
                   quantity=Quantity.MICRO_STEP),
     ],
@@ -69,14 +70,14 @@ def _twist(b: np.ndarray) -> float:
 
 
 @kernel
-def _overrun(b: np.ndarray, twist: float, speed: float) -> float:
-    """Rate of the free angle [rad/s] while it follows."""
-    return speed + twist / b[_RELEASE]
+def _overrun(b: np.ndarray, twist: float) -> float:
+    """Rate of the free angle [rad/s]."""
+    return min(0.0, twist) / b[_RELEASE]
 
 
 @kernel
 def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
-    dx[_FREE] = min(0.0, _overrun(b, _twist(b), b[_W_A] - b[_W_B]))
+    dx[_FREE] = _overrun(b, _twist(b))
 
 
 @kernel
@@ -102,7 +103,7 @@ def _write(b: np.ndarray, twist: float, speed: float, torque: float) -> None:
 def _out(b: np.ndarray, t: float) -> None:
     twist, speed = _twist(b), b[_W_A] - b[_W_B]
     _write(b, twist, speed, _torque(b, twist, speed))
-    b[_RATE] = max(speed, -twist / b[_RELEASE])
+    b[_RATE] = speed - _overrun(b, twist)
 
 
 _advance = steppers.body_stepper(_rhs, _out, _d)
@@ -127,14 +128,13 @@ def _gather(b: np.ndarray, z: np.ndarray) -> None:
 def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray) -> None:
     twist, speed = z[0], z[1]
     f[0] = _torque(b, twist, speed)
-    rate = _overrun(b, twist, speed)
-    f[1] = min(0.0, rate)
+    f[1] = _overrun(b, twist)
     carries = f[0] > 0.0
     k[0] = b[_STIFFNESS] if carries else 0.0
     k[1] = _damping(b, twist) if carries else 0.0
-    k[2] = 1.0 if rate < 0.0 else 0.0
+    k[2] = 1.0 if twist < 0.0 else 0.0
     e[0] = 1.0 if carries else -1.0
-    e[1], e[2] = twist - b[_ENGAGEMENT], rate
+    e[1], e[2] = twist - b[_ENGAGEMENT], twist
 
 
 @kernel
@@ -146,7 +146,7 @@ def _apply(b: np.ndarray, t: float, f: np.ndarray, dx: np.ndarray) -> None:
 
 
 def _directions(block: np.ndarray) -> np.ndarray:
-    return np.array([[1.0, 0.0], [0.0, 1.0], [1.0 / block[_RELEASE], 1.0]])
+    return np.array([[1.0, 0.0], [0.0, 1.0], [1.0 / block[_RELEASE], 0.0]])
 
 
 def _engaged(block: np.ndarray) -> np.ndarray:
