@@ -16,6 +16,7 @@ import numpy as np
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.answered import NO_ANSWERS, Answered, Answers
 from herringbone.analysis.balanced_angle import NoBalanceError, balanced_angles
+from herringbone.analysis.balanced_speed import balanced_speed
 from herringbone.analysis.rigid_rotation import rigid_rotation, turning
 from herringbone.analysis.steady_search import scales, steady_rotation
 from herringbone.analysis.swung_out import swung_out
@@ -142,8 +143,17 @@ def _beginnings(
     """States (n,) from which steady rotation is looked for, one after the other."""
     yield guess
     yield from turning(twin, guess)
-    if held is None and angles:
-        yield from balanced_angles(twin, guess, scales(twin))
+    if held is not None:
+        return
+    refused = None
+    if angles:
+        try:
+            yield from balanced_angles(twin, guess, scales(twin))
+        except NoBalanceError as error:
+            refused = error
+    yield from balanced_speed(twin, guess)
+    if refused:
+        raise refused
 
 
 def _kept_speed(twin: Twin, held: int | None, guess: np.ndarray, found: np.ndarray) -> bool:
