@@ -100,6 +100,19 @@ class ExchangeHost:
         getter = self.fmu.getFloat64 if self.third else self.fmu.getReal
         return np.array(getter([self.reference[name] for name in self.output_names]))
 
+    def value(self, name: str, extent: int) -> np.ndarray:
+        """A variable, all elements of an array."""
+        if self.third:
+            return np.array(self.fmu.getFloat64([self.reference[name]], extent))
+        return np.array(self.fmu.getReal([self.reference[name]]))
+
+    def derivatives(self, of: list[int], by: ModelVariable, count: int) -> np.ndarray:
+        """Derivatives of `count` numbers by a variable; by all elements of an array at once."""
+        if not self.third:
+            return np.array(self.fmu.getDirectionalDerivative(of, [by.valueReference], [1.0]))
+        seed = [1.0] * len(_elements(by))
+        return np.array(self.fmu.getDirectionalDerivative(of, [by.valueReference], seed, count))
+
     @property
     def output_names(self) -> list[str]:
         found = (v.name for v in self.model.modelVariables if v.causality == "output")

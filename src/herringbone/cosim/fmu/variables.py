@@ -84,13 +84,16 @@ def element_name(array: str, place: Sequence[int]) -> str:
 def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
     """Variables of an FMU by name; of an array its elements.
 
-    The array of a signal's nodes is shown as these are called in FMI 2.0.
+    The array of a signal's nodes is shown as these are called in FMI 2.0. An output may depend on
+    states or the time, too: inputs are what it passes on.
     """
     dimension = _dimension(model)
     dependencies = {
         u.variable.name: None
         if u.dependencies is None
-        else frozenset(name for d in u.dependencies for name in _as_inputs(d))
+        else frozenset(
+            name for d in u.dependencies if d.causality == "input" for name in _as_inputs(d)
+        )
         for u in model.outputs
     }
     return {

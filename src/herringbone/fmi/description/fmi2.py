@@ -16,6 +16,7 @@ from herringbone.fmi.description.common import (
     initial,
     joined,
     root_element,
+    set_dependencies,
     sizes,
     starting,
     type_name,
@@ -69,7 +70,7 @@ def model_description(component: Component, native: UsedStates | None = None) ->
             variables.append(_real(reference, variable, settled=component.hosting is not None))
     for reference, text in interface.texts(declaration).items():
         variables.append(_string(reference, text))
-    _add_structure(root, component, list(reals.values()))
+    _add_structure(root, component, reals, set(rates))
     if rates:
         _add_derivatives(root, list(reals), rates)
     return root
@@ -129,26 +130,29 @@ def _string(reference: int, text: Text) -> Element:
     return scalar
 
 
-def _add_structure(root: Element, component: Component, reals: list[Variable]) -> None:
+def _add_structure(
+    root: Element, component: Component, reals: dict[int, Variable], states: set[int]
+) -> None:
     """Outputs with their direct feedthrough, and what they depend on at initialisation.
 
-    The latter are the same inputs and what `starting` tells.
+    The former depend on the states of model exchange, too; the latter are the same inputs and what
+    `starting` tells.
     """
     declaration = component.declaration
     structure = SubElement(root, "ModelStructure")
     outputs = SubElement(structure, "Outputs")
     unknowns = SubElement(structure, "InitialUnknowns")
-    position = {v.name: i for i, v in enumerate(reals, 1)}
+    position = {v.name: i for i, v in enumerate(reals.values(), 1)}
+    exchanged = [i for i, reference in enumerate(reals, 1) if reference in states]
     exact = [position[v.name] for v in starting(component)]
     exact += range(len(reals) + 1, len(reals) + 1 + len(interface.texts(declaration)))
-    for variable in reals:
+    for variable in reals.values():
         if variable.causality is not Causality.OUTPUT:
             continue
         index = str(position[variable.name])
-        inputs = sorted(position[name] for name in interface.feedthrough(declaration, variable))
-        unknown = SubElement(outputs, "Unknown", index=index, dependencies=joined(inputs))
-        if inputs:
-            unknown.set("dependenciesKind", " ".join(["dependent"] * len(inputs)))
+        inputs = [position[name] for name in interface.feedthrough(declaration, variable)]
+        unknown = SubElement(outputs, "Unknown", index=index)
+        set_dependencies(unknown, {*inputs, *exchanged})
         SubElement(unknowns, "Unknown", index=index, dependencies=joined(sorted({*inputs, *exact})))
 
 

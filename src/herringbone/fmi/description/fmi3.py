@@ -22,6 +22,7 @@ from herringbone.fmi.description.common import (
     initial,
     joined,
     root_element,
+    set_dependencies,
     sizes,
     starting,
     type_name,
@@ -65,7 +66,7 @@ def model_description_3(used: UsedStates) -> Element:
     add_experiment(root, component)
     references = dict(sorted((_references(declaration) | states).items()))
     _add_variables(root, component, references)
-    _add_structure(root, component, references)
+    _add_structure(root, component, references, set(rates))
     if rates:
         _add_derivatives(root, {i: extent for i, (_, extent) in states.items()}, rates)
         _add_indicators(root, component)
@@ -169,11 +170,15 @@ def _float64(reference: int, variable: Variable, extent: int, *, settled: bool =
 
 
 def _add_structure(
-    root: Element, component: Component, references: dict[int, tuple[Variable, int]]
+    root: Element,
+    component: Component,
+    references: dict[int, tuple[Variable, int]],
+    states: set[int],
 ) -> None:
     """Outputs with their direct feedthrough, and what they depend on at initialisation.
 
-    The latter are the same inputs and what `starting` tells.
+    The former depend on the states of model exchange, too; the latter are the same inputs and what
+    `starting` tells.
     """
     declaration = component.declaration
     structure = SubElement(root, "ModelStructure")
@@ -184,14 +189,9 @@ def _add_structure(
         if variable.causality is not Causality.OUTPUT:
             continue
         scalars = [declaration.index[name] for name in variable.feedthrough]
-        inputs = sorted(
-            at for at in {*scalars, *(first + 1 for first in scalars)} & set(references)
-        )
-        output = SubElement(
-            structure, "Output", valueReference=str(reference), dependencies=joined(inputs)
-        )
-        if inputs:
-            output.set("dependenciesKind", " ".join(["dependent"] * len(inputs)))
+        inputs = {*scalars, *(first + 1 for first in scalars)} & set(references)
+        output = SubElement(structure, "Output", valueReference=str(reference))
+        set_dependencies(output, inputs | states)
         unknowns.append(
             Element(
                 "InitialUnknown",

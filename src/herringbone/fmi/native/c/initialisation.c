@@ -172,6 +172,14 @@ static void step_of_no_length(Instance *instance) {
     *live = degree;
 }
 
+/* Outputs where no step was taken: at its nodes they are what they are now. */
+static void level_nodes(Instance *instance) {
+    double *signal = instance->block + hb_component.first_output;
+    for (uint32_t k = 0; k < hb_component.node_outputs; k++, signal += HB_STRIDE)
+        for (int node = 1; node < HB_STRIDE; node++)
+            signal[node] = signal[0];
+}
+
 Status instance_exit_initialisation(Instance *instance) {
     if (instance->now.phase != PHASE_INITIALISATION)
         return instance_refuse(instance, "exitInitializationMode");
@@ -193,10 +201,7 @@ Status instance_exit_initialisation(Instance *instance) {
         step_of_no_length(instance);
     if (!instance->model_exchange)
         instance_tell_remarks(instance);
-    double *signal = instance->block + hb_component.first_output;
-    for (uint32_t k = 0; k < hb_component.node_outputs; k++, signal += HB_STRIDE)
-        for (int node = 1; node < HB_STRIDE; node++)
-            signal[node] = signal[0];
+    level_nodes(instance);
     instance->now.phase = instance->model_exchange ? PHASE_EVENT : PHASE_STEP;
     return STATUS_OK;
 }
@@ -213,6 +218,8 @@ Status instance_refresh(Instance *instance) {
         instance->rates_outdated = true;
     }
     hb_component.out(instance->block, instance->now.time);
+    if (instance->model_exchange)
+        level_nodes(instance);
     instance->outdated = false;
     return STATUS_OK;
 }

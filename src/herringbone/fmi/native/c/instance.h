@@ -140,6 +140,8 @@ Status instance_set_choice(Instance *instance, uint32_t reference, int64_t value
 bool instance_is_input(uint32_t reference);
 /* Of an input or one of its nodes: which of the inputs, from 0. */
 uint32_t instance_input_number(uint32_t reference);
+/* Of an output or one of its nodes: the output. */
+uint32_t instance_signal_of(uint32_t reference);
 /* An output itself, none of its nodes. */
 bool instance_is_output(uint32_t reference);
 /* Value reference of a state's derivative; FMI 3: of the time. */

@@ -40,15 +40,16 @@ static bool is_known(uint32_t reference) {
            (hb_component.access[reference] == HB_INPUT || is_state(reference));
 }
 
-/* Tangent of an unknown; NULL if it has none. */
+/* Tangent of an unknown; NULL if it has none. An output's nodes have its own: no time passes. */
 static const double *tangent_of(const Instance *instance, uint32_t reference) {
     const double *dx = instance->direction + hb_component.size;
     if (reference - reference_of_rate(0) < hb_component.states)
         return &dx[hb_component.states + reference - reference_of_rate(0)];
-    bool has = instance_is_output(reference) ||
-               (instance_is_real(reference) &&
-                (is_state(reference) || hb_component.access[reference] == HB_LOCAL));
-    return has ? &instance->direction[reference] : NULL;
+    if (!instance_is_real(reference))
+        return NULL;
+    uint8_t access = hb_component.access[reference];
+    bool has = access == HB_OUTPUT || access == HB_LOCAL || is_state(reference);
+    return has ? &instance->direction[instance_signal_of(reference)] : NULL;
 }
 
 /* The kernel writes outputs; between steps they must stay those of the last step. */

@@ -35,11 +35,14 @@ uint32_t instance_input_number(uint32_t reference) {
     return (reference - hb_component.first_input) / HB_STRIDE;
 }
 
-bool instance_is_output(uint32_t reference) {
-    if (!instance_is_real(reference) || hb_component.access[reference] != HB_OUTPUT)
-        return false;
+uint32_t instance_signal_of(uint32_t reference) {
     uint32_t place = reference - hb_component.first_output;
-    return place >= hb_component.node_outputs * HB_STRIDE || place % HB_STRIDE == 0;
+    return place < hb_component.node_outputs * HB_STRIDE ? reference - place % HB_STRIDE : reference;
+}
+
+bool instance_is_output(uint32_t reference) {
+    return instance_is_real(reference) && hb_component.access[reference] == HB_OUTPUT &&
+           instance_signal_of(reference) == reference;
 }
 
 uint32_t reference_of_rate(uint32_t state) {
