@@ -28,6 +28,12 @@ def by_gearbox(result: Result) -> dict[str, Result]:
     }
 
 
+def gearbox_of_sensor(result: Result, sensor: str) -> Result:
+    """The run of the gearbox on which a sensor sits; the whole one if it sits on none alone."""
+    owns = (own for own in by_gearbox(result).values() if sensor in own.info.sensors)
+    return next(owns, result)
+
+
 def _parts(result: Result, *roles: Role) -> list[PartPath]:
     return [PartPath(part) for role in roles for part in result.parts_with(role)]
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.result import make_result
 
-from herringbone.analysis.figures.runup import tracked
+from herringbone.analysis.figures.runup import rotation, tracked
 from herringbone.core import ParameterError
 from herringbone.plotting.runs.pictures import write_pictures
 from herringbone.plotting.runs.runup import run_up
@@ -34,6 +34,20 @@ def test_mesh_orders_of_a_run(runup):
     ends = 27.0 * np.array([500.0, 2000.0]) / 60.0
     assert ends[0] < found.speed[0] < 1.3 * ends[0]
     assert 0.9 * ends[1] < found.speed[-1] < ends[1]
+
+
+def test_a_reversal_ends_what_turns_in_one_direction(runup):
+    """From +100 to -200 rad/s: the longer part is the one backwards; its amplitude is even."""
+    time = runup.data["time"].to_numpy()
+    speed = 100.0 - 750.0 * time
+    cycles = 27.0 * (100.0 * time - 375.0 * time**2) / (2.0 * np.pi)
+    force = 3.0 * np.sin(2.0 * np.pi * cycles + 1.0)
+    turned = replace(runup, data=runup.data.assign(**{SPEED: speed, FORCE: force}))
+    found = rotation(turned)
+    assert found.time[0] == pytest.approx(100.0 / 750.0, abs=2.0 * (time[1] - time[0]))
+    assert found.time[-1] == time[-1]
+    assert (np.diff(found.speed) > 0.0).all()
+    assert tracked(turned, FORCE).cut(1.0) == pytest.approx(3.0, rel=1e-3)
 
 
 def test_picture_has_a_row_per_column_with_units(runup):

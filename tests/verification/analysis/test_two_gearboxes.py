@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -10,12 +11,15 @@ from support.compiler import needs_compiler
 
 import herringbone as hb
 from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.figures.sensing.sensors import sensor_figures
+from herringbone.analysis.measured.of_run import predicted_of
 from herringbone.analysis.twin.composite import make_composite
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaring.roles import Role
+from herringbone.core.sensor_spec import SensorSpec
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.fmi.check import check_fmu
@@ -49,6 +53,7 @@ SPEED, TORQUE, RATIO, BASE_RADIUS = 1000.0 * np.pi / 30.0, 200.0, 3.0, 50.298e-3
 RUN = {"algorithm": "li:degree=3", "step": 4e-5, "record_step": 4e-5, "fmu": "in-process"}
 ARGUMENTS = ("--algorithm=li:degree=3", "--step=4e-5", "--t-end=4e-4", "--fmu=in-process", "--json")
 PROMISE = 1e-3
+CHAIN = {"sampling_hz": 5e3, "range": 1.0, "bits": 32.0, "high_pass_hz": 0.0, "low_pass_hz": 0.0}
 AMBIGUOUS = (
     "herringbone: system 'two_stages': 'gear_mesh' may mean first.gear_mesh or second.gear_mesh; "
     "write more of the path\n"
@@ -118,6 +123,25 @@ def test_columns_need_as_much_of_the_path_as_tells_them_apart(ran):
     assert result.columns("gear_mesh.pinion.w") == [f"{b}.gear_mesh.pinion.w" for b in BOXES]
     # The energy of the meshes changes over their phase: below 1e-4 of the torque.
     assert result["drive_coupling.torque"].iloc[0] == pytest.approx(TORQUE, rel=1e-4)
+
+
+def test_sensors_feel_their_own_housing_and_know_their_own_mesh(folder):
+    """The mesh frequency of the second stage is a third; a chain of 5 kHz changes rms by little."""
+    spec = {name: SensorSpec(f"{name}.modal_housing", "A", "z", CHAIN) for name in BOXES}
+    run = hb.run(folder, t_end=0.1, **RUN)
+    run = replace(run, info=replace(run.info, sensors=spec))
+    figures, refused = sensor_figures(run)
+    assert not refused
+    predicted = {name: predicted_of(run, name) for name in BOXES}
+    for name, ratio in zip(BOXES, (1.0, RATIO), strict=True):
+        found = predicted[name]
+        assert found.mesh_hz == pytest.approx(450.0 / ratio, rel=1e-3)
+        assert found.vibration.std() == pytest.approx(figures[name].rms, rel=0.02)
+        named = [x for x in figures[name].lines if x.mesh_order and not x.folded]
+        assert named
+        for line in named:
+            assert line.frequency_hz == pytest.approx(line.mesh_order * 450.0 / ratio, abs=5.0)
+    assert predicted["second"].vibration.std() != pytest.approx(predicted["first"].vibration.std())
 
 
 # -- report -------------------------------------------------------------------------------------

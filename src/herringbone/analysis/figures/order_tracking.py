@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, hann_weight
+from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, hann_weight, one_sided
 from herringbone.core import ParameterError
 from herringbone.core.wording import option
 
@@ -213,8 +213,8 @@ def frequency_map(
     starts = np.arange(0, time.size - length + 1, max(1, round(length * (1.0 - overlap))))
     blocks = np.lib.stride_tricks.sliding_window_view(signal, length)[starts]
     weight = hann_weight(length)
-    amplitude = 2.0 * np.abs(np.fft.rfft((blocks - (blocks @ weight)[:, None]) * weight, axis=1))
-    amplitude[:, 0] = 0.0
+    windowed = (blocks - (blocks @ weight)[:, None]) * weight
+    amplitude = one_sided(np.fft.rfft(windowed, axis=1).T, length).T
     middles = starts + 0.5 * (length - 1)
     means = np.lib.stride_tricks.sliding_window_view(speed, length)[starts].mean(axis=1)
     frequency = np.arange(amplitude.shape[1]) / (length * step)

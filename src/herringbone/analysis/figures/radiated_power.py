@@ -165,6 +165,8 @@ def _estimate(housing: ModalHousing, forces: np.ndarray, steady: SteadyPart) -> 
     surface = velocity @ (directions * np.sqrt(np.maximum(squares, 0.0)))
     spectrum = amplitude_spectrum(surface, steady.sample_step)
     power = 0.5 * AIR_DENSITY * SPEED_OF_SOUND * np.square(spectrum.amplitude).sum(axis=1)
+    if len(surface) % 2 == 0:  # a line at half the rate has the mean square of its amplitude
+        power[-1] *= 2.0
     shown = spectrum.frequency <= housing.valid_to_hz
     highest = min(housing.valid_to_hz, float(spectrum.frequency[-1]))
     return RadiatedPower(

@@ -26,13 +26,13 @@ _DURATION_SHARE = 0.06
 
 
 class Rotation(NamedTuple):
-    """A gear pair's rotation where it turns in one direction.
+    """A gear pair's rotation where it turns in one direction: the longest such stretch of a run.
 
     Attributes:
         rows: of the equidistant table.
         time: (n,) [s].
-        cycles: (n,) mesh periods since the start.
-        speed: (n,) of the pinion [rad/s].
+        cycles: (n,) mesh periods in that direction, since the start.
+        speed: (n,) of the pinion in that direction [rad/s].
         teeth: of the pinion.
     """
 
@@ -68,10 +68,11 @@ def rotation(result: Result, gear: str = "") -> Rotation:
         raise ParameterError(
             f"system '{result.info.system}' records no speed of a gear pair of known teeth"
         )
-    time, forward = result.data[TIME].to_numpy(), np.abs(speed)
-    steps = 0.5 * (forward[1:] + forward[:-1]) * np.diff(time)
-    cycles = np.concatenate([[0.0], np.cumsum(steps)]) * teeth / (2.0 * math.pi)
-    rows = growing(cycles)
+    time = result.data[TIME].to_numpy()
+    steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
+    turned = np.concatenate([[0.0], np.cumsum(steps)]) * teeth / (2.0 * math.pi)
+    ways = [(growing(sign * turned), sign * turned, sign * speed) for sign in (1.0, -1.0)]
+    rows, cycles, forward = max(ways, key=lambda way: way[0].stop - way[0].start)
     if rows.stop - rows.start < 2:
         raise ParameterError("the pinion does not turn: no orders")
     return Rotation(rows, time[rows], cycles[rows], forward[rows], teeth)

@@ -99,10 +99,21 @@ def amplitude_spectrum(signal: np.ndarray, sample_step: float, padding: int = 1)
     mean = weight @ signal
     length = padding * count
     windowed = ((signal - mean).T * weight).T
-    amplitude = 2.0 * np.abs(np.fft.rfft(windowed, length, axis=0))
-    amplitude[0] = 0.0
+    amplitude = one_sided(np.fft.rfft(windowed, length, axis=0), length)
     frequency = np.arange(amplitude.shape[0]) / (length * sample_step)
     return Spectrum(frequency, amplitude, mean, 1.0 / (count * sample_step))
+
+
+def one_sided(transform: np.ndarray, length: int) -> np.ndarray:
+    """Amplitudes of a real transform (k, ...) of signals without mean, of some length.
+
+    Half the rate, the last of an even length, has no mirror image.
+    """
+    amplitude = 2.0 * np.abs(transform)
+    amplitude[0] = 0.0
+    if length % 2 == 0:
+        amplitude[-1] *= 0.5
+    return amplitude
 
 
 def mesh_frequency(speed: float, number_of_teeth: float) -> float:

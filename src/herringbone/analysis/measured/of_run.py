@@ -7,6 +7,7 @@ from herringbone.analysis.asked import of_both_gears
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.sensing.sensors import sensor_figures
 from herringbone.analysis.figures.sensing.velocity_sensor import sensor_velocity
+from herringbone.analysis.gearboxes import gearbox_of_sensor
 from herringbone.analysis.measured.beside import Beside, Predicted, beside
 from herringbone.analysis.measured.record import read_measured
 from herringbone.core import ParameterError
@@ -24,7 +25,7 @@ def predicted_of(result: Result, sensor: str) -> Predicted:
     found, refused = sensor_figures(result, (sensor,))
     if sensor in refused:
         raise ParameterError(f"sensor {sensor}: {refused[sensor]}")
-    one = found[sensor]
+    one, result = found[sensor], gearbox_of_sensor(result, sensor)
     pairs = result.parts_with(Role.GEAR_PAIR)
     teeth = of_both_gears(result, pairs[0], Quantity.NUMBER_OF_TEETH) if pairs else None
     mesh = run_mesh_frequency(result)
@@ -36,10 +37,11 @@ def predicted_of(result: Result, sensor: str) -> Predicted:
     even = result.uniform()
     time = even.data[TIME].to_numpy()
     rows = steady_part(even).rows
-    velocity = sensor_velocity(even, (one.spec.point,), axis=one.spec.axis)[rows, 0]
+    spec, chain = one.spec, one.chain
+    velocity = sensor_velocity(even, (spec.point,), axis=spec.axis, part=spec.part)[rows, 0]
     step = float(time[-1] - time[0]) / (time.size - 1)
     meshes = math.lcm(*(round(z) for z in teeth))
-    return Predicted(velocity, step, one.chain, mesh, meshes)
+    return Predicted(velocity, step, chain, mesh, meshes)
 
 
 def compare_record(

@@ -59,6 +59,29 @@ def linear_network(
         StructureError: nothing stands for a foreign part, or the connections are wrong.
         ParameterError: a mesh is open, or a value is wrong.
     """
+    return _frozen(system, strangers, stiffness.of)
+
+
+def stiffest_mesh(system: System, strangers: Strangers = NO_STRANGERS) -> float:
+    """Largest stiffness of a mesh over its mean, of all meshes; raises as `linear_network`.
+
+    Returns:
+        1.0 if there is no mesh.
+    """
+    found = [1.0]
+
+    def recorded(values: np.ndarray) -> float:
+        found.append(float(np.max(values) / np.mean(values)))
+        return float(np.mean(values))
+
+    _frozen(system, strangers, recorded)
+    return max(found)
+
+
+def _frozen(
+    system: System, strangers: Strangers, stiffness: Callable[[np.ndarray], float]
+) -> tuple[Network, list[Member]]:
+    """See `linear_network`; `stiffness` chooses from the stiffnesses of a mesh over its period."""
     own = _own_instances(system, strangers)
     members: list[Member] = [
         StandIn(strangers[spec.name]) if spec.name in strangers else own[spec.name]
@@ -69,7 +92,7 @@ def linear_network(
     _propagate(network, members)
     for member in members:
         if isinstance(member, Instance) and member.component.freeze:
-            member.component.freeze(member, stiffness.of)
+            member.component.freeze(member, stiffness)
     return network, members
 
 

@@ -45,7 +45,7 @@ _d = Declaration(
         parameter("damping", "N.m.s/rad", "torsional, engaged", 5.0, minimum=0,
                   quantity=Quantity.DAMPING),
         parameter("engagement_angle", "rad", "twist at which damping is full", 1e-4, minimum=1e-9),
-        parameter("release_time", "s", "by which the free angle follows an overrun", 1e-3, minimum=1e-4),
+        parameter("release_time", "s", "until the free angle follows", 1e-3, minimum=1e-4),
         parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4,
                   quantity=Quantity.MICRO_STEP),
     ],

@@ -13,6 +13,7 @@ from herringbone.analysis.figures.operating_point import (
     run_mesh_frequency,
     steady_part,
 )
+from herringbone.analysis.figures.order_tracking import frequency_map
 from herringbone.analysis.figures.spectra import (
     amplitude_spectrum,
     mesh_frequency,
@@ -49,6 +50,14 @@ def test_padding_draws_peaks_at_most_one_percent_low():
     signal = np.sin(2.0 * math.pi * frequency * TIME)
     assert amplitude_spectrum(signal, STEP).amplitude.max() < 0.87
     assert 0.99 < amplitude_spectrum(signal, STEP, padding=4).amplitude.max() < 1.001
+
+
+def test_line_at_half_the_rate():
+    """It has no mirror image, so that it is not counted twice."""
+    time = np.arange(2000) / 1800.0
+    wave = np.cos(2.0 * np.pi * 900.0 * time)
+    assert amplitude_spectrum(wave, 1.0 / 1800.0).amplitude.max() == pytest.approx(1.0)
+    assert frequency_map(time, np.ones(2000), wave, 0.5).amplitude.max() == pytest.approx(1.0)
 
 
 def test_mean_does_not_leak_into_the_spectrum():

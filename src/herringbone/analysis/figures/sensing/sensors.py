@@ -18,6 +18,7 @@ from herringbone.analysis.figures.operating_point import run_mesh_frequency, ste
 from herringbone.analysis.figures.remembered_figures import figure_of
 from herringbone.analysis.figures.sensing.lines import Felt, SensorLine, sensor_lines
 from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
+from herringbone.analysis.gearboxes import gearbox_of_sensor
 from herringbone.components.registry import component_for
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
@@ -135,7 +136,8 @@ def _of_all(result: Result) -> _Found:
         try:
             if spec.part not in motions:
                 motions[spec.part] = _motion(result, spec.part)
-            found[name] = _figures(result, name, spec, *motions[spec.part])
+            own = gearbox_of_sensor(result, name)
+            found[name] = _figures(own, name, spec, *motions[spec.part])
         except ParameterError as error:
             refused[name] = str(error)
     return found, refused

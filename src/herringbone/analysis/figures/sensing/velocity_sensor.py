@@ -165,14 +165,15 @@ class VelocitySensor:
 
 
 def sensor_velocity(
-    result: Result, sensors: Sequence[str] = ("A", "B", "C"), *, axis: str = "z"
+    result: Result, sensors: Sequence[str] = ("A", "B", "C"), *, axis: str = "z", part: str = ""
 ) -> np.ndarray:
-    """Velocity of the housing at its sensors under the bearing forces of a run.
+    """Velocity of a housing at its sensors under the bearing forces of a run.
 
     Args:
         result: of a run with a housing whose modal data have the sensors.
         sensors: names.
         axis: direction that they feel; axial by default.
+        part: name of the housing; the first one if not given.
 
     Returns:
         (n, len(sensors)) [m/s] at the records, equidistant ones if the step was adaptive.
@@ -181,7 +182,7 @@ def sensor_velocity(
         ParameterError: no forces are recorded, or there is no such sensor.
     """
     result = result.uniform()
-    housing = housing_of(result)
+    housing = housing_of(result, part)
     known = housing.dofs if housing else ()
     missing = [name for name in sensors if (name, axis) not in known]
     if housing is None or missing:
@@ -190,5 +191,5 @@ def sensor_velocity(
             "takes data with sensors, as 'herringbone housing build' makes them"
         )
     step = float(np.diff(result.data[TIME].to_numpy()[:2])[0])
-    modal = modal_velocity(housing, seat_forces(result), step)
+    modal = modal_velocity(housing, seat_forces(result, part), step)
     return modal @ np.array([housing.shape(name, axis) for name in sensors]).T

@@ -17,6 +17,7 @@ from herringbone.analysis.stability.linear_parts import (
     MeshStiffness,
     Strangers,
     linear_network,
+    stiffest_mesh,
 )
 from herringbone.analysis.stability.steps.clock_grid import (
     bands_on_grid,
@@ -55,7 +56,8 @@ class StepLimits:
             that was examined above `from` is unstable, and finite for the last band, too, if
             steps are stable again up to where the scan ended.
         mesh_stiffness: first unstable step [s] at minimum, mean and maximum; infinite if none.
-        frequency: of the motion that grows at the mean's limit [Hz].
+        frequency: of the motion that grows at the mean's limit [Hz]; where the mean has none, at
+            an extreme's.
         simulated_limit: first step [s] at which runs of the non-linear system are unstable; None
             if none was looked for, or if none is from half to twice the predicted limit.
         residual: largest deviation of what stands for foreign parts from trials that were not
@@ -121,18 +123,23 @@ def step_limits(
     growth = growth_of(amplification)
     if clocks_of(strangers):
         return _limits_on_grid(algorithm, growth, amplification, strangers, largest)
-    bands = unstable_bands(growth, largest=largest, coarse=_SCAN_OF_STRANGERS if alone else COARSE)
+    coarse = _SCAN_OF_STRANGERS if alone else COARSE
+    bands = unstable_bands(growth, largest=largest, coarse=coarse)
     first = bands[0][0] if bands else np.inf
     found = {MeshStiffness.MINIMUM.value: first, "mean": first, MeshStiffness.MAXIMUM.value: first}
     inside = min(_BEYOND * first, np.sqrt(np.prod(bands[0]))) if bands else np.nan
     frequency = growth(float(inside)).frequency if bands else np.nan
     own = max(growth(float(step)).own for step in ((first, inside) if bands else (largest,)))
-    has_mesh = any(
-        component(str(part.component)).freeze for part in system.parts if not part.foreign
-    )
-    for extreme in (MeshStiffness.MINIMUM, MeshStiffness.MAXIMUM):
-        if has_mesh and bands:
-            found[extreme.value] = first_unstable_near(growth_of(amplification_at(extreme)), first)
+    if any(component(str(part.component)).freeze for part in system.parts if not part.foreign):
+        # Where the mesh decides, the limit goes with the root of its stiffness.
+        lower = stiffest_mesh(system, strangers) ** -0.5 if bands else 1.0
+        for extreme in (MeshStiffness.MINIMUM, MeshStiffness.MAXIMUM):
+            at_extreme = growth_of(amplification_at(extreme))
+            if bands:
+                found[extreme.value] = first_unstable_near(at_extreme, first, lower)
+            elif own_bands := unstable_bands(at_extreme, largest=largest, coarse=coarse):
+                found[extreme.value] = own_bands[0][0]
+                frequency = at_extreme(_BEYOND * own_bands[0][0]).frequency
     residual = _residual(amplification, strangers, min(found.values()))
     if residual > PROMISED and again and np.isfinite(first):
         for stranger in strangers.values():

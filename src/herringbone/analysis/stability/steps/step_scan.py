@@ -79,9 +79,15 @@ def unstable_bands(
     return tuple(bands)
 
 
-def first_unstable_near(growth: GrowthOf, limit: float) -> float:
-    """First unstable step near a known one [s]; closely around it narrow bands are seen, too."""
-    low = _NEAR * limit
+def first_unstable_near(growth: GrowthOf, limit: float, below: float = 1.0) -> float:
+    """First unstable step near a known one [s]; closely around it narrow bands are seen, too.
+
+    Args:
+        growth: at a step.
+        limit: the known one [s].
+        below: factor by which it may lie lower for a reason that is known.
+    """
+    low = _NEAR * below * limit
     while low > SMALLEST_STEP and _grows(safe_growth(growth, low)):
         low *= _NEAR
     samples = _along(growth, low, limit / _NEAR, beyond=False)
