@@ -108,8 +108,7 @@ def sweep(
     known = with_known_values(structure, chosen_scene, wishes)
     chosen = evaluator or _suited(known, wishes)
     check_columns(known, chosen.columns)
-    if series and not chosen.has_series:
-        raise _of_runs("series")
+    _check_wishes(wishes, chosen, series=series)
     units = {name: _unit(known, name) for name in study.names}
     units |= {SPEED: study.speed_unit} if SPEED in units else {}
     first = study.point(0)
@@ -140,13 +139,19 @@ def sweep(
 
 def _suited(system: System, wishes: Wishes) -> Evaluator:
     """Steady states, of runs where parts are foreign; these runs as long as asked for, if so."""
-    of_runs = {"t_end": wishes.t_end, "record_step": wishes.record_step, "start": wishes.start}
-    given = [name for name, value in of_runs.items() if value is not None]
     if system.foreign_parts:
         return Settled() if wishes.t_end is None else Transient()
-    if given:
-        raise _of_runs(", ".join(given))
     return Steady()
+
+
+def _check_wishes(wishes: Wishes, evaluator: Evaluator, *, series: bool) -> None:
+    """Raise ParameterError for what only runs have, where points are not evaluated by runs."""
+    of_runs = {"t_end": wishes.t_end, "record_step": wishes.record_step, "start": wishes.start}
+    given = [name for name, value in of_runs.items() if value is not None]
+    if series:
+        given.append("series")
+    if given and not evaluator.has_series:
+        raise _of_runs(", ".join(given))
 
 
 def _of_runs(what: str) -> ParameterError:

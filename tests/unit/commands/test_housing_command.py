@@ -1,6 +1,7 @@
 """The commands `herringbone housing reduce` and `import` as a user sees them."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import scipy.sparse as sp
 from support.housing import small_housing
 
 from herringbone.commands import main as cli
+from herringbone.core.places.paths import component_folder
 from herringbone.housing import read_housing, write_housing
 from herringbone.housing.reduction.error import drive_point_errors
 from herringbone.housing.reduction.reduced_housing import reduce_housing
@@ -41,6 +43,20 @@ def test_reduce(data, capsys):
     assert f"error certified below {100 * bound:.2g} % of the static compliance" in out
 
 
+def test_scenes_ask_of_the_data_that_are_reduced_a_zip_file_too(here, capsys):
+    """Softer than the shipped housing: its lines are others."""
+    shipped = read_housing(component_folder("modal_housing") / "resources")
+    soft = replace(shipped, frequency_hz=0.5 * shipped.frequency_hz, certificate={}, static=None)
+    told = []
+    for name in ("soft", "soft.zip"):
+        write_housing(soft, name)
+        assert cli.main(["housing", "reduce", name, "--for", "gearbox", "--json"]) == 0
+        printed = capsys.readouterr()
+        told.append((printed.err, json.loads(printed.out)["changes"]))
+    assert told[0] == told[1]
+    assert told[0][1]
+
+
 def test_reduce_as_json(data, capsys):
     assert cli.main(["housing", "reduce", "data", "--band", "600", "--json", "-o", "r.zip"]) == 0
     figures = json.loads(capsys.readouterr().out)
@@ -55,6 +71,7 @@ def test_reduce_as_json(data, capsys):
     [
         (["reduce", "nowhere"], "there is no file nowhere"),
         (["reduce", "data", "--band", "2500"], "band 2500 Hz is beyond valid_to_hz = 2000 Hz"),
+        (["reduce", "data", "--band", "0"], "band 0 Hz must be positive"),
         (["reduce", "data", "--tolerance", "2"], "tolerance 2 must lie between 0 and 1"),
         (["import", "modes.op2"], "modes.op2: '.op2' cannot be imported; export DMIG cards"),
         (["reduce", "data", "-o", "data"], "-o data would overwrite the full data"),

@@ -84,6 +84,8 @@ def test_runs_have_rows_over_time_on_request(tmp_path):
         hb.sweep("gearbox", evaluator=steady.Steady(), series=True, **wanted)
     with pytest.raises(ParameterError, match="t_end: of runs"):
         hb.sweep("gearbox", **wanted)
+    with pytest.raises(ParameterError, match="t_end, start: of runs"):
+        hb.sweep("gearbox", evaluator=steady.Steady(tolerance=0.01), start="ramp", **wanted)
     found = hb.sweep("gearbox", evaluator=Transient(), series=True, workers=1, **wanted)
     (folder,) = (tmp_path / "series").iterdir()
     result = hb.load(folder)

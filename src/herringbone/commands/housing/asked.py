@@ -1,11 +1,15 @@
 """What a scene asks of a housing that is reduced: its band, and what the reduction changes."""
 
 import argparse
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from herringbone.commands.output import say
 from herringbone.core import ParameterError
+from herringbone.housing import ModalHousing, write_housing
 
 if TYPE_CHECKING:
     from herringbone.studies.planning.housing_band import Asked
@@ -14,8 +18,12 @@ _USUAL = 2000.0
 """Band if nothing tells one [Hz]."""
 
 
-def asked_by(options: argparse.Namespace) -> "Asked | None":
+def asked_by(options: argparse.Namespace, full: ModalHousing) -> "Asked | None":
     """Lines of what the scene asks of the system with the full data; None without a scene.
+
+    Args:
+        options: of the command.
+        full: data that are reduced.
 
     Raises:
         ParameterError: a scene without its system.
@@ -27,8 +35,8 @@ def asked_by(options: argparse.Namespace) -> "Asked | None":
         return None
     from herringbone.studies.planning.housing_band import asked_of  # noqa: PLC0415 (numba)
 
-    full = options.data if options.data.is_dir() else None
-    return asked_of(options.system, options.scene, full)
+    with _as_folder(full) as folder:
+        return asked_of(options.system, options.scene, folder)
 
 
 def band_for(options: argparse.Namespace, asked: "Asked | None", good_to: float) -> float:
@@ -40,9 +48,9 @@ def band_for(options: argparse.Namespace, asked: "Asked | None", good_to: float)
         good_to: end of the band for which the data are good [Hz].
     """
     if asked is None:
-        return options.band or _USUAL
+        return _USUAL if options.band is None else float(options.band)
     needed = asked.band(options.tolerance)
-    band = float(options.band or min(needed, good_to))
+    band = min(needed, good_to) if options.band is None else float(options.band)
     share, question = asked.beyond(band)
     if share > options.tolerance:
         better = f"take --band {needed:g}"
@@ -56,13 +64,21 @@ def band_for(options: argparse.Namespace, asked: "Asked | None", good_to: float)
     return band
 
 
-def changes(asked: "Asked", reduced: Path) -> dict[str, dict]:
-    """What the reduced data change of what is asked; a zip file is not solved with."""
-    if not reduced.is_dir():
-        return {}
+def changes(asked: "Asked", reduced: ModalHousing) -> dict[str, dict]:
+    """What the reduced data change of what is asked."""
+    with _as_folder(reduced) as folder:
+        found = asked.changed_by(folder)
     return {
         question.name: {
-            "error": found.error, "worst": found.worst, "worst_error": found.worst_error
+            "error": apart.error, "worst": apart.worst, "worst_error": apart.worst_error
         }
-        for question, found in asked.changed_by(reduced)
+        for question, apart in found
     }  # fmt: skip
+
+
+@contextmanager
+def _as_folder(housing: ModalHousing) -> Iterator[Path]:
+    """The data as systems take them, wherever they have come from."""
+    with tempfile.TemporaryDirectory(prefix="herringbone-") as folder:
+        write_housing(housing, Path(folder))
+        yield Path(folder)

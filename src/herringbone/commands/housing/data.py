@@ -26,7 +26,7 @@ _MOST_MODES = component_for(Role.HOUSING).declaration.vectors[0].capacity
 def reduce_command(options: argparse.Namespace) -> int:
     """Reduce modal data, write them with their certificate and a picture beside the full data."""
     full = read_housing(options.data)
-    asked = asked_by(options)
+    asked = asked_by(options, full)
     band = band_for(options, asked, full.valid_to_hz)
     stem = options.data.name.removesuffix(".zip")
     output = options.output or Path("results") / f"{stem}-{band:g}Hz"
@@ -57,7 +57,7 @@ def reduce_command(options: argparse.Namespace) -> int:
         "files": [str(output), str(picture)],
     }
     if asked is not None:
-        figures["changes"] = changes(asked, output)
+        figures["changes"] = changes(asked, reduced)
     show(json.dumps(figures) if options.json else _text(figures))
     return 0
 
