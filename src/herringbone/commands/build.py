@@ -48,22 +48,12 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HerringboneError: something about the options is wrong, or the build fails.
     """
-    from herringbone.core import ParameterError  # noqa: PLC0415
     from herringbone.running.exporting.export import (  # noqa: PLC0415 (numba: only when it builds)
         build_fmus,
         chosen_platforms,
         untested,
     )
 
-    if not options.native and (options.platforms or options.fmi != 2):
-        raise ParameterError(
-            "--platforms and --fmi choose among native FMUs; add --native. Python FMUs are FMI 2.0 "
-            "and run wherever Python and this package do"
-        )
-    if not options.native and options.set:
-        raise ParameterError(
-            "--set puts files into native FMUs; add --native. Python FMUs read theirs at run time"
-        )
     if options.output:
         check_writable(options.output)
     platforms = chosen_platforms(options.platforms)

@@ -8,7 +8,15 @@ import time
 import pytest
 
 from herringbone.core import ResourceError
-from herringbone.core.caching.files import is_stored, keep, kept, store, stored_files, write_file
+from herringbone.core.caching.files import (
+    all_stored,
+    is_stored,
+    keep,
+    kept,
+    store,
+    store_all,
+    write_file,
+)
 from herringbone.core.caching.generated import load_generated
 from herringbone.core.places.paths import CACHE_VARIABLE, cache_folder
 
@@ -32,10 +40,14 @@ def test_damaged_files_are_not_stored(tmp_path, caplog, content, suffix):
     assert f"{tmp_path / 'x'} is damaged; it is made anew" in caplog.text
 
 
-def test_what_was_stored_and_is_gone_is_known(tmp_path):
+def test_files_that_belong_together_are_there_all_or_none(tmp_path):
+    """A process that dies while it stores them leaves some, and no list of them."""
     store(tmp_path / "x.o", b"code")
+    assert all_stored(tmp_path) == []
+    store_all(tmp_path, {"y.o": b"y", "x.o": b"x"})
+    assert all_stored(tmp_path) == [tmp_path / "x.o", tmp_path / "y.o"]
     (tmp_path / "x.o").unlink()
-    assert stored_files(tmp_path, "*.o") == [tmp_path / "x.o"]
+    assert all_stored(tmp_path) == []
 
 
 @pytest.mark.parametrize("content", ["", "{", "null", '{"a": 1}', "0\n{}", "\0"])

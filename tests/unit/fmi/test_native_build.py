@@ -11,7 +11,7 @@ from fmpy.model_description import read_model_description
 
 from herringbone.commands.main import main
 from herringbone.core import FmuError, ParameterError
-from herringbone.core.places.paths import component_folder
+from herringbone.core.places.paths import CACHE_VARIABLE, component_folder
 from herringbone.fmi import kind
 from herringbone.fmi.native import PLATFORMS, build, build_native_fmus, compiler, own_platform
 from herringbone.fmi.native.model import registered_model
@@ -140,6 +140,30 @@ def test_bad_options_give_one_line(arguments, said, capsys):
     out, err = capsys.readouterr()
     assert (out, len(err.splitlines())) == ("", 1)
     assert said in err
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"fmi": 3}, r"platforms and fmi choose among native FMUs; add native=True"),
+        ({"platforms": ["all"]}, r"platforms and fmi choose among native FMUs; add native=True"),
+        ({"files": {"gear_mesh.x": "y"}}, r"files into native FMUs; add native=True"),
+    ],
+)
+def test_what_python_fmus_have_not_is_refused_in_scripts(asked, said, tmp_path):
+    with pytest.raises(ParameterError, match=said):
+        build_fmus(["torque_source"], tmp_path, **asked)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_wrapper_that_was_not_stored_to_its_end_is_made_anew(tmp_path, monkeypatch):
+    """As where the process died: some of its objects, each whole."""
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+    whole = build._wrapper(own_platform(), 2)
+    for file in whole[1:]:
+        file.unlink()
+    assert build._wrapper(own_platform(), 2) == whole
+    assert all(file.is_file() for file in whole)
 
 
 def test_without_compiler_native_is_refused_and_auto_takes_python(monkeypatch):

@@ -7,7 +7,7 @@ import logging
 import os
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,8 @@ from herringbone.core.places.paths import CACHE_VARIABLE, is_trusted
 
 _LOG = logging.getLogger("herringbone")
 _SUFFIX = ".sha256"
+_LIST = "all_files.json"
+"""Names of the files of a folder that belong together, written last."""
 _STALE = 3600.0
 """Seconds after which a file that was not written to its end is of a dead process."""
 
@@ -108,9 +110,18 @@ def alone_in(folder: Path) -> Iterator[None]:
             os.close(descriptor)
 
 
-def stored_files(folder: Path, pattern: str) -> list[Path]:
-    """Files of a folder that were stored, also those that are gone since."""
-    return sorted(s.with_suffix("") for s in folder.glob(pattern + _SUFFIX))
+def store_all(folder: Path, contents: Mapping[str, bytes]) -> None:
+    """Put files into a folder of the cache that belong together, by name."""
+    for name, content in contents.items():
+        store(folder / name, content)
+    store(folder / _LIST, json.dumps(sorted(contents)).encode())
+
+
+def all_stored(folder: Path) -> list[Path]:
+    """Files of a folder that were put there together; none if any is missing or damaged."""
+    listed = read_stored(folder / _LIST)
+    files = [folder / name for name in json.loads(listed)] if listed else []
+    return files if all([is_stored(file) for file in files]) else []
 
 
 def keep(file: Path, found: object) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.caching.built import note_built
-from herringbone.core.caching.files import alone_in, is_stored, store, stored_files
+from herringbone.core.caching.files import all_stored, alone_in, is_stored, store, store_all
 from herringbone.core.caching.keys import digest_of, kernels_key, wrapper_key
 from herringbone.core.places.paths import cache_folder
 from herringbone.core.places.temporary import temporary_folder
@@ -147,15 +147,13 @@ def _wrapper(platform: Platform, fmi: int) -> list[Path]:
     key = digest_of(wrapper_key(), kernels_key(compile_wrapper.__module__))
     folder = cache_folder("native-objects") / f"wrapper-{key}"
     folder = folder / f"{platform.name}-{compiler.name}-fmi{fmi}"
-    files = stored_files(folder, "*.o")
-    if files and all([is_stored(file) for file in files]):
-        return files
-    with temporary_folder() as scratch:
-        compile_wrapper(compiler, platform, scratch, fmi)
-        made = {folder / file.name: file.read_bytes() for file in scratch.glob("*.o")}
-    for file, code in made.items():
-        store(file, code)
-    return sorted(made)
+    with alone_in(folder):
+        if files := all_stored(folder):
+            return files
+        with temporary_folder() as scratch:
+            compile_wrapper(compiler, platform, scratch, fmi)
+            store_all(folder, {file.name: file.read_bytes() for file in scratch.glob("*.o")})
+        return all_stored(folder)
 
 
 def _make_libraries(model: Model, platforms: list[Platform], fmi: int) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from herringbone.core import ParameterError, ResourceError
 from herringbone.core.places.files import write_whole
+from herringbone.core.wording import option, speaks_commands
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import System
@@ -21,6 +22,7 @@ from herringbone.scenes import Scene
 
 ALL = "all"
 """In place of the names of all platforms."""
+_FMI_OF_PYTHON = 2
 _log = logging.getLogger(__name__)
 
 
@@ -57,6 +59,8 @@ def build_fmus(
         HerringboneError: there is no component or platform of that name, the compiler failed, or
             a file cannot be written.
     """
+    if not native:
+        _refuse_of_native(bool(platforms) or fmi != _FMI_OF_PYTHON, bool(files))
     names = list(components) or None
     built = (
         build_native_fmus(
@@ -81,6 +85,19 @@ def build_fmus(
         raise ResourceError(
             f"cannot write to {folder}: {error.strerror}; choose another folder"
         ) from error
+
+
+def _refuse_of_native(chosen: bool, files: bool) -> None:
+    """Raise ParameterError for what only native FMUs have."""
+    add = f"add {option('native', True)}. Python FMUs"
+    if chosen:
+        raise ParameterError(
+            f"{option('platforms')} and {option('fmi')} choose among native FMUs; {add} are FMI "
+            f"{_FMI_OF_PYTHON}.0 and run wherever Python and this package do"
+        )
+    if files:
+        puts = "--set puts" if speaks_commands() else "files = ... puts"
+        raise ParameterError(f"{puts} files into native FMUs; {add} read theirs at run time")
 
 
 def chosen_platforms(names: Sequence[str]) -> list[str]:

@@ -5,11 +5,12 @@ from pathlib import Path
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.core import ParameterError, ResourceError
-from herringbone.core.caching.files import is_stored, store, stored_files
-from herringbone.core.caching.keys import digest_of, kernels_key
+from herringbone.core.caching.files import all_stored, alone_in, store_all
+from herringbone.core.caching.keys import digest_of, kernels_key, versions_of
 from herringbone.core.declaring.roles import Quantity
 from herringbone.core.places.files import is_file, is_folder
 from herringbone.core.places.paths import cache_folder
+from herringbone.core.places.temporary import temporary_folder
 from herringbone.core.process.activity import activity
 from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System
@@ -17,6 +18,8 @@ from herringbone.housing import read_housing, write_housing
 from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
 
 _FILES = {Quantity.MODES: MODES, Quantity.SHAPES: SHAPES}
+_LIBRARIES = "numpy", "scipy"
+"""Whose versions may change the last digits."""
 _FMU, _DIMENSIONS = ".fmu", ".toml"
 
 
@@ -74,13 +77,18 @@ def _built(file: Path) -> Path:
     from herringbone.housing.welded.design import read_design  # noqa: PLC0415
 
     design = read_design(file)
-    key = digest_of(file.read_bytes(), kernels_key("herringbone.housing.welded.build"))
-    folder = cache_folder("welded-housings") / f"{file.stem}-{key}"
-    files = stored_files(folder, "*")
-    if folder / HEAD not in files or not all([is_stored(name) for name in files]):
-        with activity(f"making the housing of {file.name}", "once for these dimensions"):
-            write_housing(build_housing(design).model, folder)
-        for name in sorted(folder.iterdir()):
-            if name not in stored_files(folder, "*"):
-                store(name, name.read_bytes())
+    made_by = kernels_key("herringbone.housing.welded.build"), *versions_of(*_LIBRARIES)
+    folder = (
+        cache_folder("welded-housings") / f"{file.stem}-{digest_of(file.read_bytes(), *made_by)}"
+    )
+    with alone_in(folder):
+        if all_stored(folder):
+            return folder
+        with (
+            activity(f"making the housing of {file.name}", "once for these dimensions"),
+            temporary_folder() as scratch,
+        ):
+            write_housing(build_housing(design).model, scratch)
+            contents = {made.name: made.read_bytes() for made in scratch.iterdir()}
+        store_all(folder, contents)
     return folder

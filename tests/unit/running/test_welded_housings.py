@@ -1,0 +1,59 @@
+"""Housings of dimensions in the cache: made once, whoever asks, and whole."""
+
+import shutil
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from herringbone.core.places.paths import CACHE_VARIABLE
+from herringbone.cosim.structure.system_file import read_system
+from herringbone.housing import default_housing, read_housing
+from herringbone.housing.welded import build, default_data
+from herringbone.running.housings.given import with_housing_data
+
+
+@pytest.fixture
+def made(monkeypatch, tmp_path):
+    """How often a housing was made."""
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+    found = []
+
+    def built(design):
+        found.append(design)
+        return SimpleNamespace(model=default_housing())
+
+    monkeypatch.setattr(build, "build_housing", built)
+    return found
+
+
+@pytest.fixture
+def used(tmp_path):
+    """Function: folder of the modal data of a file of dimensions."""
+    file = tmp_path / "mine.toml"
+    shutil.copy(default_data.DESIGN, file)
+
+    def folder():
+        system = with_housing_data(read_system("gearbox"), {"modal_housing": file})
+        return Path(system.part("modal_housing").values["modes"]).parent
+
+    return folder
+
+
+def test_it_is_made_once_and_damage_is_mended_once(made, used):
+    folder = used()
+    assert used() == folder
+    assert len(made) == 1
+    with (folder / "modes.csv").open("a") as file:
+        file.write("#")
+    for _ in range(3):
+        assert used() == folder
+        assert len(made) == 2
+    assert read_housing(folder).frequency_hz.tolist() == default_housing().frequency_hz.tolist()
+
+
+def test_who_asks_for_one_that_another_one_makes_waits_for_it(made, used):
+    with ThreadPoolExecutor(4) as pool:
+        assert len({future.result() for future in [pool.submit(used) for _ in range(4)]}) == 1
+    assert len(made) == 1
