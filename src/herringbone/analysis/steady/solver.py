@@ -5,8 +5,13 @@ from copy import copy
 
 import numpy as np
 
+from herringbone.analysis.steady.flanks import on_other_flank, prepared_flanks
 from herringbone.analysis.steady.searching.guess import Guess, Neighbour, motion_at
-from herringbone.analysis.steady.searching.remarks import NO_LOAD, check_shooting
+from herringbone.analysis.steady.searching.remarks import (
+    NO_LOAD,
+    check_shooting,
+    other_flank,
+)
 from herringbone.analysis.steady.searching.search import Search
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SHOOTING, SteadyState
@@ -107,9 +112,12 @@ class SteadySolver:
         if point.torque == 0.0 and not (orbit.converged and errors.left_out):
             orbit = orbit._replace(converged=False)  # rest with open teeth may be at any gap
             notes = (*notes, NO_LOAD)
+        wrong = on_other_flank(structure, orbit) if orbit.converged else _reversed(structure, point)
+        if wrong:
+            orbit, notes = orbit._replace(converged=False), (other_flank(structure, wrong),)
         before = near._replace(before=None) if near else None
         return SteadyState(
-            structure, point, motion, orbit, errors, self.tolerance, notes, by, before
+            structure, point, motion, orbit, errors, self.tolerance, notes, by, before, wrong
         )
 
     def _at(self, point: Point) -> Structure:
@@ -119,6 +127,12 @@ class SteadySolver:
             self._structure = Structure(self._system.with_values(values), self._structure)
             self._values = values
         return self._structure
+
+
+def _reversed(structure: Structure, point: Point) -> tuple[str, ...]:
+    """Gear pairs that were prepared for another flank than a point's torque presses."""
+    flanks = prepared_flanks(structure)
+    return tuple(gear for gear in flanks if (point.torque or 0.0) * flanks[gear] < 0.0)
 
 
 def _guesses(structure: Structure, near: Neighbour | None, point: Point) -> list[tuple[int, Guess]]:

@@ -1,11 +1,15 @@
 """A system at an operating point, in the equilibrium of it."""
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
+from herringbone.analysis.set_points import SPEED, TORQUE, set_point
 from herringbone.analysis.steady.set_points import Point, SetPoints
+from herringbone.core import EquilibriumError, ParameterError
 from herringbone.cosim.structure.system import System
-from herringbone.running.loading import load_system
+from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.running.prepared import Prepared, Wishes, prepared
 from herringbone.scenes import Scene, Start
 
@@ -25,8 +29,29 @@ def prepared_at(
     """
     point.check()
     asked = replace(wishes, start=Start.REST, start_offset={}, lean=True)
-    structure = system if isinstance(system, System) else load_system(system)[0]
+    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
     if point.torque is not None and wishes.gear:  # what balances it follows from the pair
         structure = prepared(system, scene, asked).system
     wanted = {**SetPoints(structure).values(point), **wishes.values}
-    return prepared(system, scene, replace(asked, values=wanted, start=Start.EQUILIBRIUM))
+    asked = replace(asked, values=wanted, start=Start.EQUILIBRIUM)
+    signals = _signals(with_known_values(structure, load_scene(folder, scene), asked), point)
+    if not signals:
+        return prepared(system, scene, asked)
+    try:
+        return prepared(system, scene, replace(asked, values={**wanted, **signals}))
+    except EquilibriumError:  # a motion may be there all the same, as where run-outs open the teeth
+        return prepared(system, scene, asked)
+
+
+def _signals(system: System, point: Point) -> dict[str, float | str]:
+    """Values with which what commands a system has the point's speed and torque.
+
+    The flank that carries follows from these. None of what is an input, or changes with time.
+    """
+    found: dict[str, float | str] = {}
+    for name, value in ((SPEED, point.speed), (TORQUE, point.torque)):
+        at = None if value is None else set_point(system, name)
+        if value is not None and at is not None and not at.given:
+            with suppress(ParameterError):
+                found |= commanded(system, {name: value})
+    return found

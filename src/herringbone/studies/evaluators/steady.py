@@ -90,9 +90,11 @@ class _States:
         at, values = self._split(point)
         if near is None or not _renewable(near.values, values):
             near = self._begun(point)
-        state, solver, prepared, first = near
-        changed = {n: float(v) for n, v in values.items() if prepared[n] != v}
-        found = solver.solve(SteadyPoint(**at, values=changed), state)
+        found = self._from(near, at, values)
+        if not found.found and found.on_other_flank and near.state is not None:
+            near = self._begun(point)
+            found = self._from(near, at, values)
+        _, solver, prepared, first = near
         if not found.found:
             return Evaluated(UNSETTLED, "; ".join(found.notes))
         if not found.converged:
@@ -110,6 +112,10 @@ class _States:
         return Evaluated(
             STEADY, "; ".join(told), figures, _Near(found.neighbour, solver, prepared, first)
         )
+
+    def _from(self, near: _Near, at: dict[str, float], values: Point) -> SteadyState:
+        changed = {n: float(v) for n, v in values.items() if near.values[n] != v}
+        return near.solver.solve(SteadyPoint(**at, values=changed), near.state)
 
     def _begun(self, point: Point) -> _Near:
         at, values = self._split(point)

@@ -37,6 +37,7 @@ class Accuracy(NamedTuple):
         change: of the last correction of the iteration, whose square is about what is left.
         of_channels: (n,) as left_out, of each channel over its own alternating part, as they stand
             in the rows of `Structure.groups`; NaN of what stands still.
+        lacking: how far the laws' values are off, over their sizes, where no group alternates.
     """
 
     left_out: Mapping[str, float]
@@ -44,11 +45,12 @@ class Accuracy(NamedTuple):
     aside: Mapping[str, float]
     change: Mapping[str, float]
     of_channels: np.ndarray = _NO_CHANNELS
+    lacking: float = 0.0
 
     @property
     def worst(self) -> float:
         """The largest error."""
-        return max(self.left_out.values(), default=0.0)
+        return max(self.left_out.values(), default=self.lacking)
 
     @property
     def by_thinning(self) -> bool:
@@ -91,7 +93,11 @@ def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit)
             change[group] = math.sqrt(last[own].sum()) / alternating
     moving = whole > nothing**2
     of_channels = np.sqrt(np.where(moving, every, np.nan) / np.where(moving, whole, 1.0)) + outside
-    return Accuracy(left_out, thinned, besides, change, of_channels)
+    still = 0.0
+    if not left_out:
+        balance = Balance(structure.problem, period, motion)
+        still = balance.lacking(orbit.channels, orbit.response.orders)[0].residual
+    return Accuracy(left_out, thinned, besides, change, of_channels, still)
 
 
 def with_change(structure: Structure, errors: Accuracy, before: Orbit, after: Orbit) -> Accuracy:

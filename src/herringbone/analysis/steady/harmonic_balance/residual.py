@@ -34,12 +34,18 @@ def residual_of(problem: Problem, samples: Samples, off: np.ndarray, counted: np
 def change_of(problem: Problem, before: np.ndarray, after: np.ndarray) -> float:
     """What a correction changes the stiff arguments by, over their alternating part.
 
+    Over all of it where nothing alternates, as in equilibrium: it is no motion that has converged
+    whatever it lacks.
+
     Args:
         problem: linear part and laws.
         before, after: arguments (arguments, harmonics).
     """
     rows = problem.directions @ after
-    alternating = squares(rows[:, 1:]).sum(axis=1)
+    powers = squares(rows)
+    sizes = powers[:, 1:].sum(axis=1)
+    if not sizes.any():
+        sizes = powers.sum(axis=1)
     moved = squares(rows - problem.directions @ before).sum(axis=1)
-    sizes = np.where(alternating > 0.0, alternating, np.inf)
+    sizes = np.where(sizes > 0.0, sizes, np.inf)
     return math.sqrt((moved / sizes).max(initial=0.0))

@@ -9,6 +9,7 @@ from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.fourier import on
 from herringbone.analysis.steady.harmonic_balance.lattice import lines_between
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
+from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.steady.marching.march import March
 from herringbone.analysis.steady.marching.marched import marched
 from herringbone.analysis.steady.set_points import Point
@@ -101,8 +102,17 @@ def several(motion: Motion, times: int) -> Motion:
 
 def standing(structure: Structure, motion: Motion) -> Orbit:
     """Equilibrium at the angle of the start."""
-    still = Balance(structure.problem, Period(0, 1), motion)
-    return still.solve(structure.start, np.zeros(1, dtype=int), _SAME)
+    return _at_rest(structure.problem, structure.start, motion)
+
+
+def _at_rest(problem: Problem, start: np.ndarray, motion: Motion) -> Orbit:
+    """Equilibrium; where none is found from the start, as of open teeth, one step towards it.
+
+    A march may begin there all the same.
+    """
+    still, mean = Balance(problem, Period(0, 1), motion), np.zeros(1, dtype=int)
+    found = still.solve(start, mean, _SAME)
+    return found if found.converged and turns(found) else still.solve(start, mean, np.inf)
 
 
 def beginnings(structure: Structure, motion: Motion, still: Orbit) -> Iterator[tuple[Orbit, float]]:
@@ -112,8 +122,7 @@ def beginnings(structure: Structure, motion: Motion, still: Orbit) -> Iterator[t
     begin with is no equilibrium.
     """
     yield still, 0.0
-    balance = Balance(structure.ideal, Period(0, 1), motion)
-    ideal = balance.solve(structure.ideal_start, np.zeros(1, dtype=int), _SAME)
+    ideal = _at_rest(structure.ideal, structure.ideal_start, motion)
     if turns(ideal):
         yield ideal, _RAMP
 
@@ -175,7 +184,7 @@ def settling(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) 
 
 def turns(still: Orbit) -> bool:
     """False at speeds that no rotor has, which what was asked for may lead to."""
-    return _SHORTEST <= still.period <= _LONGEST
+    return 1.0 / _LONGEST <= still.response.frequency / (2.0 * np.pi) <= 1.0 / _SHORTEST
 
 
 def _check_speed(structure: Structure, speed: float) -> None:

@@ -1,5 +1,7 @@
 """What is said of a search for a periodic motion."""
 
+from collections.abc import Sequence
+
 from herringbone.analysis.steady.marching.march import March
 from herringbone.analysis.steady.marching.repeated import Repeated
 from herringbone.analysis.steady.searching.found import Found
@@ -19,6 +21,14 @@ NO_SHOT = (
     f"shooting comes to no periodic motion from marches of up to {SETTLING:g} s; teeth that rattle "
     "may never repeat: ask for a larger torque, begin at a state nearby, or run it"
 )
+
+
+def other_flank(structure: Structure, gears: Sequence[str]) -> str:
+    """Why a motion is none that a system has: its equations are those of the other flank."""
+    return (
+        f"{structure.system.name} was prepared for the other flank of {', '.join(gears)}, and its "
+        "line of action: prepare it at this point, as 'steady' does"
+    )
 
 
 def told(times: int) -> tuple[str, ...]:
