@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from herringbone.commands import record
+from herringbone.commands.options import check_highest
 from herringbone.commands.output import check_writable, show
+from herringbone.core import ParameterError
 from herringbone.core.places.files import write_whole
 
 if TYPE_CHECKING:
@@ -48,10 +50,13 @@ def run(options: argparse.Namespace) -> int:
     from herringbone.analysis.accuracy.comparison import compare  # noqa: PLC0415 (numpy: lazy)
     from herringbone.result.folder.typed import as_json  # noqa: PLC0415
 
+    check_highest(options.highest)
     if options.output:
         check_writable(options.output)
     if options.second.is_file():
+        _refuse(options, ("columns", "highest"), "of two results folders; B is a record")
         return record.run(options)
+    _refuse(options, record.OPTIONS, "of a measured record; B is a folder")
     found = compare(options.first, options.second, *options.columns)
     text = json.dumps(as_json(found.summary()), indent=None if options.json else 1)
     if options.output:
@@ -62,6 +67,13 @@ def run(options: argparse.Namespace) -> int:
         found.plot(options.highest).savefig(files[2])
     show(text if options.json else "\n".join(lines(found)))
     return 0
+
+
+def _refuse(options: argparse.Namespace, names: Sequence[str], why: str) -> None:
+    """Raise ParameterError if any of some options is given."""
+    for name in names:
+        if getattr(options, name) not in (None, []):
+            raise ParameterError(f"--{name.replace('_', '-')}: {why}")
 
 
 def lines(found: "Comparison") -> Iterator[str]:

@@ -272,3 +272,9 @@ def assignments(items: Sequence[str], option: str, form: str) -> dict[str, str]:
             raise ParameterError(f"{option} {item}: it must be {form}")
         found[name] = value
     return found
+
+
+def check_highest(highest: float | None) -> None:
+    """Raise ParameterError for an end of spectra [Hz] that is none."""
+    if highest is not None and not highest > 0.0:
+        raise ParameterError(f"--highest {highest:g}: it must be positive, in Hz")

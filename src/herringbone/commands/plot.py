@@ -4,6 +4,7 @@ import argparse
 import csv
 from pathlib import Path
 
+from herringbone.commands.options import check_highest
 from herringbone.commands.output import check_writable, say, show, written_into
 from herringbone.core import ParameterError, ResourceError
 from herringbone.core.places.files import is_file
@@ -32,8 +33,7 @@ def run(options: argparse.Namespace) -> int:
         HerringboneError: the folder holds no results, or files cannot be written.
     """
     output = options.output or options.folder
-    if options.highest is not None and not options.highest > 0.0:
-        raise ParameterError(f"--highest {options.highest:g}: it must be positive, in Hz")
+    check_highest(options.highest)
     if not options.folder.exists():
         raise ParameterError(f"there is no folder {options.folder}")
     if is_file(options.folder):

@@ -13,14 +13,16 @@ from herringbone.core.places.files import write_whole
 if TYPE_CHECKING:
     from herringbone.analysis.measured.beside import Beside
 
+OPTIONS = "sensor", "channel", "full_scale"
+"""Of a record alone."""
 _SHOWN = 12
 _LINES = "lines.csv"
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the options that a record takes."""
-    sub.add_argument("--sensor", default="A", help="with a record as B: of the system; A")
-    sub.add_argument("--channel", default="", help="of the record; may be left out if it has one")
+    sub.add_argument("--sensor", help="with a record as B: of the system; A if not given")
+    sub.add_argument("--channel", help="of the record; may be left out if it has one")
     sub.add_argument(
         "--full-scale", type=float, help="of a WAV record: velocity of its largest number in m/s"
     )
@@ -38,8 +40,8 @@ def run(options: argparse.Namespace) -> int:
     found = compare_record(
         load(options.first),
         options.second,
-        options.sensor,
-        channel=options.channel,
+        options.sensor or "A",
+        channel=options.channel or "",
         full_scale=options.full_scale,
     )
     if options.output:

@@ -17,8 +17,11 @@ the largest load is reached, over the phases of the side's table.
    s_a s_b <= 0. The slope is 0 at the first load, the last secant at the last one. K is constant
    below the first load (a load of zero lies at u = 0: there K leaves its limit with u^2).
    K and dK/du are taken at u = 0 ... 32.
-2. Both are interpolated over the phases of the table by the periodic C2 cubic spline.
-3. Spline and slope are taken at the 128 phases of the nodes.
+2. Both are interpolated over the phases of the table by the periodic C2 cubic spline. Slopes of K
+   are at most 2.5 times K over an interval: it does not swing below zero where it is zero at some
+   phases, as under no load of relieved teeth.
+3. Spline and slope are taken at the 128 phases of the nodes; there the same limit holds, also for
+   dK/du.
 
 *Between nodes*, K and dK/du at u = j and j + 1 are cubic Hermite functions of p, and K is the cubic
 Hermite function of u with these values and slopes. So F is C1, periodic in p, and F(p, 0) = 0. U is
@@ -44,6 +47,7 @@ LOADS = 64
 NODE = 6
 """Numbers of a node."""
 _LAST = DEFLECTIONS - 1
+_STEEPEST = 2.5
 _THIRD, _SIXTH, _SEVENTH = 1.0 / 3.0, 1.0 / 6.0, 1.0 / 7.0
 _ROW = DEFLECTIONS * NODE
 TABLE_SIZE = 2 + PHASES * _ROW
@@ -65,6 +69,17 @@ def _resample(
         value, slope = hermite(p - k, values[k], values[following], slopes[k], slopes[following])
         b[to + i * _ROW] = value
         b[slope_to + i * _ROW] = slope * ratio
+
+
+@kernel
+def _limited(slope: float, value: float) -> float:
+    """A slope over an interval with which a cubic between values of zero or more is not negative.
+
+    J. W. Schmidt and W. Hess, BIT 28, 1988, 340-352: -3 times the value at least at its beginning,
+    3 times at most at its end. Here both at both, and less, for what lies between nodes.
+    """
+    most = _STEEPEST * max(0.0, value)
+    return max(-most, min(most, slope))
 
 
 @kernel
@@ -103,6 +118,9 @@ def build(
                     m[0] = 0.0  # the secant leaves its limit with the deflection, not with its root
                 column[i] = _at(u, k, m, count, j, what)
             periodic_slopes(column, 0, 1, phases, slope, 0)
+            if what == 0:
+                for i in range(phases):
+                    slope[i] = _limited(slope[i], column[i])
             _resample(
                 column,
                 slope,
@@ -111,6 +129,11 @@ def build(
                 base + j * NODE + 2 * what,
                 base + j * NODE + 2 * what + 1,
             )
+    for i in range(PHASES):
+        for j in range(DEFLECTIONS):
+            n = base + i * _ROW + j * NODE
+            b[n] = max(0.0, b[n])
+            b[n + 1], b[n + 2] = _limited(b[n + 1], b[n]), _limited(b[n + 2], b[n])
     _cumulate(b, base)
 
 

@@ -10,7 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from herringbone.core import HerringboneError, ResourceError
+from herringbone.core import HerringboneError, OutcomeKind, ResourceError
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.places.files import PART, is_file
 from herringbone.core.wording import option
@@ -22,12 +22,13 @@ from herringbone.result.result import Result
 from herringbone.running.output.claim import FolderLock
 from herringbone.running.reporting.report import store_result
 from herringbone.studies.keys import Chain
-from herringbone.studies.working.chain import Done, read_so_far
+from herringbone.studies.working.chain import FAILED, Done, read_so_far
 from herringbone.studies.working.so_far import Row, SoFar
 
 FORMAT = 1
 _VERSIONS = {"versions", "studies"}
 """Settings that tell who has computed."""
+_TRIED_AGAIN = {FAILED, OutcomeKind.PART_FAILED.value}
 CHAINS, SERIES = "chains", "series"
 _CPU, _UNITS, _ROWS = "cpu_s", "units", "rows"
 
@@ -80,8 +81,13 @@ class StudyFolder:
         return self.folder / CHAINS / f"{chain.key}.json"
 
     def has(self, chain: Chain, *, series: bool) -> bool:
-        """True if a chain is done, with its rows over time if these are asked for."""
-        if not is_file(self._file(chain)) or self._read(chain) is None:
+        """True if a chain is done, with its rows over time if these are asked for.
+
+        A point of its own that a part has failed is tried again: it may have died for want of
+        memory, or have come too late on a machine that had other things to do.
+        """
+        found = self._read(chain) if is_file(self._file(chain)) else None
+        if found is None or (len(found.rows) == 1 and found.rows[0].outcome in _TRIED_AGAIN):
             return False
         return not series or all(map(self._has_series, chain.keys))
 

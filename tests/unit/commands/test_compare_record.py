@@ -118,3 +118,24 @@ def test_what_is_missing_is_one_line(results, tmp_path, capsys):
     write(tmp_path / "b.csv", np.zeros(100))
     assert main(["compare", str(results), str(tmp_path / "b.csv"), "--sensor", "Z"]) == 2
     assert "there is no sensor 'Z'; there are: A, B, C" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--highest", "-5"], "--highest -5: it must be positive, in Hz"),
+        (["--sensor", "B"], "--sensor: of a measured record; B is a folder"),
+        (["--full-scale", "0.1"], "--full-scale: of a measured record; B is a folder"),
+    ],
+)
+def test_options_that_two_folders_do_not_take(results, tmp_path, options, said, capsys):
+    out = tmp_path / "out"
+    assert main(["compare", str(results), str(results), "-o", str(out), *options]) == 2
+    assert said in capsys.readouterr().err
+    assert not out.exists() or not list(out.iterdir())
+
+
+def test_options_that_a_record_does_not_take(results, samples, tmp_path, capsys):
+    write(tmp_path / "own.csv", samples[400:])
+    assert main(["compare", str(results), str(tmp_path / "own.csv"), "--columns", "*.f_y"]) == 2
+    assert "--columns: of two results folders; B is a record" in capsys.readouterr().err

@@ -73,6 +73,8 @@ def test_reduce_as_json(data, capsys):
         (["reduce", "data", "--band", "2500"], "band 2500 Hz is beyond valid_to_hz = 2000 Hz"),
         (["reduce", "data", "--band", "0"], "band 0 Hz must be positive"),
         (["reduce", "data", "--tolerance", "2"], "tolerance 2 must lie between 0 and 1"),
+        (["import", "modes.frd", "--band", "500"], "--band: of matrices, which are reduced; modes"),
+        (["import", "m.unv", "--tolerance", "0.1"], "--tolerance: of matrices, which are reduced"),
         (["import", "modes.op2"], "modes.op2: '.op2' cannot be imported; export DMIG cards"),
         (["reduce", "data", "-o", "data"], "-o data would overwrite the full data"),
         (["import", "modes"], "modes: a file without suffix cannot be imported; it takes .mtx"),

@@ -54,3 +54,10 @@ def test_wrong_input_is_one_line(tmp_path, capsys, arguments, said):
     (line,) = capsys.readouterr().err.splitlines()
     assert said in line
     assert not (tmp_path / "out").exists()
+
+
+def test_a_point_that_came_to_nothing_makes_an_exit_code(tmp_path, capsys):
+    """Nothing holds teeth together without load."""
+    arguments = ["sweep", "gearbox", "--speed", "1000", "--torque", "0,150", "-o", str(tmp_path)]
+    assert main([*arguments, "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["outcomes"] == {"steady": 1, "not_converged": 1}

@@ -58,6 +58,19 @@ def test_law_of_another_pair(teeth, law):
     assert "the parameters are of z 27/81" in said
 
 
+def test_the_hand_of_the_law_does_not_matter(teeth, law):
+    """Its overlap ratio is that of the face width, whichever way the teeth lean."""
+    header = next(line for line in law.read_text().splitlines() if "pair_law:" in line)
+    *_, angle, _, _, _, _ = header.split()
+    other = changed(law, f" {angle} ", f" -{angle} ")
+    forces = []
+    for file in (law, other):
+        pair = {"tooth_deviations": str(teeth), "pair_law": str(file), "ramp_turns": 0.0}
+        found = gear_pair(SHIPPED, {**pair, "approach": 5e-6})
+        forces.append(found["mesh_left.force"])
+    assert forces[0] == forces[1] > 0.0
+
+
 def test_teeth_missing(teeth, law):
     rows = teeth.read_text().splitlines()
     row = next(r for r in rows if r.startswith("left,drive,wheel,81,"))
@@ -78,6 +91,7 @@ def test_gear_missing(teeth, law):
         ("left,drive,pinion,1,", "tooth 1 of a flank of a gear stands twice"),
         ("left,drive,pinion,2.5,", "tooth 2.5 must be a whole number from 1 to 400"),
         ("left,drive,pinion,0,", "tooth 0 must be a whole number"),
+        ("left,drive,pinion,28,", "tooth 28 of a flank of a gear, of which 27 teeth stand there"),
         ("left,both,pinion,2,", "flank 'both' is none of drive, coast"),
     ],
 )

@@ -57,7 +57,7 @@ def swap(text: str, old: str, new: str) -> str:
 
 BAD_MODES = [
     ("2,normal", "2,elastic", "kind 'elastic' is none of normal, residual, rigid"),
-    ("normal,250.5", "normal,0", "mode 2: frequency 0 Hz must be positive (0 only if rigid)"),
+    ("normal,250.5", "normal,0", "mode 2: frequency 0 Hz must be positive, and 0 if rigid"),
     ("normal,250.5", "normal,-3", "mode 2: frequency -3 Hz must be positive"),
     ("rigid,0,", "rigid,-1,", "mode 1: frequency -1 Hz must be positive"),
     ("250.5,0.01", "250.5,-0.01", "mode 2: damping ratio -0.01 must lie between 0 and 1"),

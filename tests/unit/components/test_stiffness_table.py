@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.gearing.gear_mesh import write_table
 
-from herringbone.components.resources.stiffness_table import read_stiffness_table
+from herringbone.components.resources.stiffness_table import mesh_harmonics, read_stiffness_table
 from herringbone.core import ResourceError
 
 UNITS = "# units: load N, phase 1, stiffness N/m"
@@ -210,3 +210,12 @@ def test_file_that_is_no_text(tmp_path):
     (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00\x01")
     with pytest.raises(ResourceError, match=r"cannot read .*binary\.csv"):
         read_stiffness_table(tmp_path / "binary.csv")
+
+
+@pytest.mark.parametrize("count", [3, 4, 8])
+def test_harmonics_of_few_phases(count):
+    """Half of an even number of phases has no mirror image."""
+    phases = np.arange(count) / count
+    highest = count // 2
+    wave = 2.0 + 0.3 * np.cos(2.0 * np.pi * highest * phases)
+    assert mesh_harmonics(wave)[highest - 1] == pytest.approx(0.3)

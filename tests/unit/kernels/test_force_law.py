@@ -119,6 +119,18 @@ def test_monotone(mesh):
         assert np.diff([f for f, _ in values]).min() > 0.0
 
 
+def test_never_pulls_where_no_load_leaves_a_gap():
+    """Relieved teeth: no stiffness under no load at some phases; a C2 spline swings below zero."""
+    loads = np.array([0.0, 500.0, 2000.0, 8000.0])
+    stiffness = np.full((4, 16), 4e8) * np.array([[0.5], [0.8], [0.9], [1.0]])
+    stiffness[0, 4:8] = 0.0
+    stiffness[0, 8:16:2] = 5e6
+    force, limit, _ = law(loads, stiffness)
+    for p in np.arange(512) / 512.0:
+        for x in (1e-12, 1e-9, 1e-3 * limit, 0.01 * limit):
+            assert force(p, x)[0] >= 0.0, (p, x)
+
+
 def test_secant_is_constant_at_small_deflections(mesh):
     force, limit, smallest = mesh
     node = limit / (force_law.DEFLECTIONS - 1) ** 2  # below it there is one cell

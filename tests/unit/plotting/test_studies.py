@@ -210,6 +210,41 @@ def test_sensitivities_of_a_table_make_a_band_and_a_tornado_plot(table, tmp_path
     ]
 
 
+def test_sensitivities_are_those_at_the_base_of_what_is_not_varied():
+    """Level c where b is 0, its base, 1 / c where it is 1; b has no logarithm to be varied by."""
+    grid = itertools.product((0.0, 1.0), (1.0, 2.0, 4.0), (1000.0, 2000.0))
+    rows = [_row(n, {"g.b": b, "g.c": c}, s, s * (c if b == 0.0 else 1.0 / c))
+            for n, (b, c, s) in enumerate(grid)]  # fmt: skip
+    bands, tornados, _ = _uncertain(Points(pd.DataFrame(rows), _UNITS), 1.0)
+    (found,) = tornados["v"][0].itertuples()
+    assert (found.sensitivity, found.points) == (pytest.approx(1.0), 3)
+    assert bands["v"].high == pytest.approx(4.0 * bands["v"].low)
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [("A.csv", 1.0, 1000.0, 1.0), ("B.csv", 1.0, 2000.0, 2.0), ("B.csv", 2.0, 2000.0, 3.0)],
+        [("A.csv", 1.0, 1000.0, np.nan), ("A.csv", 2.0, 1000.0, 1.0),
+         ("A.csv", 4.0, 1000.0, np.nan), ("A.csv", 1.0, 2000.0, 1.0),
+         ("A.csv", 2.0, 2000.0, np.nan), ("A.csv", 4.0, 2000.0, 3.0)],
+    ],
+)  # fmt: skip
+def test_no_tornado_where_the_base_has_no_level_and_sensitivities(rows, tmp_path):
+    """As where the other points are of another file, or the base has failed."""
+    table = [_row(n, {"g.file": f, "g.c": c}, s, v) for n, (f, c, s, v) in enumerate(rows)]
+    found = write_study_pictures(pd.DataFrame(table), _UNITS, tmp_path)
+    assert "no tornado.v.png: no point has a level and sensitivities of it" in found.missing
+
+
+_UNITS = {"speed": "r/min", "g.b": "1", "g.c": "1", "v.rms": "m/s", "v.order_1": "m/s"}
+
+
+def _row(number, parameters, speed, level):
+    return {"point": number, **parameters, "speed": speed, "outcome": "steady", "message": "",
+            "mesh_frequency": speed / 2.0, "v.rms": level, "v.order_1": level}  # fmt: skip
+
+
 def test_axes_of_small_lengths_are_in_micrometres_and_two_values_make_no_map():
     table = pd.DataFrame({"mesh.f_a": [0.0, 15e-6] * 2, "speed": [600.0, 600.0, 700.0, 700.0],
                           "outcome": "steady", "force.rms": 1.0})  # fmt: skip

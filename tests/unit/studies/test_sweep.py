@@ -109,6 +109,18 @@ def test_a_failed_point_is_a_row():
     assert np.isfinite(table["x"][3])
 
 
+def test_a_point_that_stands_alone_and_failed_is_tried_again(tmp_path):
+    """A part may have died for want of memory; what a chain of several has is not lost for that."""
+    for longest, tried in ((1, {"300.0"}), (None, set())):
+        log, folder = tmp_path / f"log-{longest}", tmp_path / f"study-{longest}"
+        refusing = Cheap(longest=longest, refused=300.0, log=str(log))
+        first = swept(folder, torque=[1.0], evaluator=refusing).table
+        done = log.read_text()
+        again = swept(folder, torque=[1.0], evaluator=refusing).table
+        assert again.equals(first)
+        assert set(log.read_text().removeprefix(done).split()) == tried
+
+
 def test_a_chain_that_kills_all_workers_is_said(monkeypatch):
     monkeypatch.setattr(processes, "_ATTEMPTS", 1)
     with pytest.raises(HerringboneError, match="died of the same chain"):

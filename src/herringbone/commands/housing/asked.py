@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING
 
 from herringbone.commands.output import say
 from herringbone.core import ParameterError
+from herringbone.core.reduction import BAND
 from herringbone.housing import ModalHousing, write_housing
 
 if TYPE_CHECKING:
     from herringbone.studies.planning.housing_band import Asked
-
-_USUAL = 2000.0
-"""Band if nothing tells one [Hz]."""
 
 
 def asked_by(options: argparse.Namespace, full: ModalHousing) -> "Asked | None":
@@ -48,7 +46,7 @@ def band_for(options: argparse.Namespace, asked: "Asked | None", good_to: float)
         good_to: end of the band for which the data are good [Hz].
     """
     if asked is None:
-        return _USUAL if options.band is None else float(options.band)
+        return BAND if options.band is None else float(options.band)
     needed = asked.band(options.tolerance)
     band = min(needed, good_to) if options.band is None else float(options.band)
     share, question = asked.beyond(band)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from herringbone.commands.options import add_command
 from herringbone.commands.output import check_writable, say, show
+from herringbone.core.reduction import BAND, TOLERANCE
 
 if TYPE_CHECKING:
     from herringbone.housing.welded.build import BuiltHousing
@@ -35,7 +36,7 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
     sub = add("reduce", _reduce, "keep the modes that a band needs, with a certified error")
     sub.add_argument("data", type=Path, help="folder or .zip file of the format modal-housing")
     _band_options(sub)
-    sub.set_defaults(band=None)
+    sub.set_defaults(tolerance=TOLERANCE)
     sub.add_argument("--for", dest="system", help="system whose scene decides on the band")
     sub.add_argument(
         "--scene",
@@ -56,13 +57,14 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
 
 def _band_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
-        "--band", type=float, default=2000.0, help="highest frequency of use in Hz; 2000"
+        "--band", type=float, help=f"highest frequency of use in Hz; {BAND:g} if not given"
     )
     sub.add_argument(
-        "--tolerance", type=float, default=0.05,
+        "--tolerance",
+        type=float,
         help="error of the receptance at the seats, relative to the static compliance; "
-        "%(default)g if not given",
-    )  # fmt: skip
+        f"{TOLERANCE:g} if not given",
+    )
     sub.add_argument(
         "-o", "--output", type=Path, help="folder or .zip file; under results if not given"
     )

@@ -81,6 +81,8 @@ def add_options(sub: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Compute what is missing, write the table, and say what came out.
 
+    The exit code is 1 if a point came to nothing.
+
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
@@ -133,7 +135,7 @@ def run(options: argparse.Namespace) -> int:
         say(line)
     files_told = [str(folder / file.name) for file in (*found.files, *drawn.files)]
     show(_summary(found, files_told, as_json=options.json))
-    return 0
+    return int(not set(found.table["outcome"]) <= _GOOD)
 
 
 def _points(options: argparse.Namespace) -> tuple[dict[str, Any], dict[str, Any]]:

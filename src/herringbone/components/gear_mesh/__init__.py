@@ -67,7 +67,7 @@ contact line lies at s = (p + j) p_bt (j: any whole number) from the start A of 
 at the end of the face that leads; the coast flank of the same pinion tooth meets the other line of
 action, and the other end leads there. With the pinion's base tooth thickness the sum of both is
 
-    coast_phase = 2 g / p_bt + 1/2 + b tan(beta_b) / p_bt - backlash / (2 cos(beta_b) p_bt)
+    coast_phase = 2 g / p_bt + 1/2 + b tan|beta_b| / p_bt - backlash / (2 cos(beta_b) p_bt)
 
 g: path of approach, sqrt(ra2^2 - rb2^2) - rb2 tan(alpha_wt), for teeth that are as thick as their
 spaces at the working circle but for the backlash, of which each gear has half. Add half of what the

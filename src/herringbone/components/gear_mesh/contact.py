@@ -56,7 +56,7 @@ def _flank(
     x = depth if depth > 0.0 else OPEN
     force, tangent, slope = force_law.law(b, at.TABLE[0] + side * force_law.TABLE_SIZE, phase, x)
     b[at.TANGENT + 2 * side + (0 if f > 0.0 else 1)] = tangent
-    damping = 2.0 * b[at.ZETA] * math.sqrt(tangent * b[at.PATH_MASS])
+    damping = 2.0 * b[at.ZETA] * math.sqrt(max(0.0, tangent) * b[at.PATH_MASS])
     if depth <= 0.0:
         return damping * rate, 0.0
     g = min(1.0, depth * b[at.PER_TRANSITION])

@@ -48,7 +48,7 @@ def wanted_rows(dofs: Dofs) -> np.ndarray:
 def refusals(dofs: Dofs, most: int) -> tuple[Refusal, ...]:
     """What `collect` may return."""
     return (
-        Refusal(", mode %g: frequency %g Hz must be positive (0 only if rigid)"),
+        Refusal(", mode %g: frequency %g Hz must be positive, and 0 if rigid"),
         Refusal(", mode %g: damping ratio %g must lie between 0 and 1"),
         Refusal(f": %g modes; at most {most}"),
         Refusal(" has %g modes, the file of frequencies has %g", 1),
@@ -66,7 +66,7 @@ def _check_modes(values: np.ndarray, modes: int, report: np.ndarray) -> int:
         at = _WIDTH * (mode + 1)
         kind, frequency_hz, damping_ratio = values[at + 1], values[at + 2], values[at + 3]
         report[0] = mode + 1
-        if frequency_hz < 0.0 or (frequency_hz == 0.0 and kind != _RIGID):
+        if frequency_hz < 0.0 or (frequency_hz == 0.0) != (kind == _RIGID):
             report[1] = frequency_hz
             return _FREQUENCY
         if damping_ratio < 0.0 or damping_ratio > 1.0:

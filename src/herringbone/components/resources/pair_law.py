@@ -9,7 +9,7 @@ and where |s| > 2.7, M counts as zero. The comment line
 
 tells of which pair the law is (as of the stiffness table: teeth, base radii [m], base helix angle
 [rad], face width [m]), n, the length g of the path of contact [m] and the depth D [m]. With p_bt =
-2 pi r_b1 / z1, eps_a = g / p_bt and eps_b = b tan(beta_b) / p_bt. A file without that line has no
+2 pi r_b1 / z1, eps_a = g / p_bt and eps_b = b tan|beta_b| / p_bt. A file without that line has no
 law.
 
 The law of a side is brought in line with the side's stiffness table: at the nodes of position q, M
@@ -113,9 +113,9 @@ def check(values: np.ndarray, rows: int, width: int, report: np.ndarray) -> int:
 
 @kernel
 def contact_ratios(values: np.ndarray) -> tuple[float, float]:
-    """Transverse contact ratio and overlap ratio of the pair that a law is of."""
+    """Transverse contact ratio and overlap ratio of the pair that a law is of, of either hand."""
     teeth, base = values[PAIR_AT], values[PAIR_AT + 2]
-    angle, width = values[PAIR_AT + 4], values[PAIR_AT + 5]
+    angle, width = abs(values[PAIR_AT + 4]), values[PAIR_AT + 5]
     pitch = 2.0 * math.pi * base / teeth
     return values[LENGTH] / pitch, width * sine(angle) / cosine(angle) / pitch
 

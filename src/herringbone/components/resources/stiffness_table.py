@@ -254,5 +254,17 @@ def read_uncertainty(file: Path, load: float) -> Uncertainty | None:
         return None
     loads, stiffness = read_stiffness_table(file)[0]
     row = stiffness[np.abs(loads - load).argmin()]
-    amplitudes = np.abs(np.fft.rfft(row))[1 : 1 + STATED_HARMONICS] * 2.0 / row.size
+    amplitudes = mesh_harmonics(row)[:STATED_HARMONICS]
     return Uncertainty(float(stated[0]), stated[1:], amplitudes / row.mean())
+
+
+def mesh_harmonics(stiffness: np.ndarray) -> np.ndarray:
+    """Amplitudes (..., n//2) of the harmonics 1 to n//2 of stiffnesses (..., n) over a mesh.
+
+    The last one of an even number of phases has no mirror image.
+    """
+    count = stiffness.shape[-1]
+    amplitudes = np.abs(np.fft.rfft(stiffness, axis=-1))[..., 1:] * 2.0 / count
+    if count % 2 == 0:
+        amplitudes[..., -1] *= 0.5
+    return amplitudes

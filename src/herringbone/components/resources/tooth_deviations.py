@@ -35,11 +35,13 @@ _WIDTH = len(COLUMNS)
 _GEAR = 1 + NUMBERS * TEETH
 TABLE_SIZE = 1 + 4 * 2 * _GEAR
 """Length of the table part: 1 if a number is not zero; by side, flank and gear: teeth; numbers."""
-_NO_TOOTH, _TWICE = 1, 2
-OTHER_COUNT = 3
+_NO_TOOTH, _TWICE, _GAP = 1, 2, 3
+OTHER_COUNT = 4
 REFUSALS = (
     Refusal(f": tooth %g must be a whole number from 1 to {TEETH}"),
     Refusal(": tooth %g of a flank of a gear stands twice"),
+    Refusal(": tooth %g of a flank of a gear, of which %g teeth stand there: they are counted from "
+            "1, none is left out"),
     Refusal(": a flank has deviations of %g teeth of the pinion and %g of the wheel; the pair has "
             "%g and %g"),
 )  # fmt: skip
@@ -67,7 +69,7 @@ def collect(values: np.ndarray, rows: int, b: np.ndarray, at: int, report: np.nd
         report: numbers of a refusal.
 
     Returns:
-        0 or the number of a refusal: no number of a tooth, tooth twice.
+        0 or the number of a refusal: no number of a tooth, tooth twice, teeth left out.
     """
     for row in range(rows):
         v = _WIDTH * (row + 1)
@@ -93,6 +95,12 @@ def collect(values: np.ndarray, rows: int, b: np.ndarray, at: int, report: np.nd
                 same = same and values[u + k] == values[v + k]
             if same:
                 return _TWICE
+    for row in range(rows):
+        v = _WIDTH * (row + 1)
+        report[0] = values[v + 3]
+        report[1] = b[group(at, int(values[v]), int(values[v + 1]), int(values[v + 2]))]
+        if report[0] > report[1]:
+            return _GAP
     return 0
 
 

@@ -147,13 +147,6 @@ def joined(numbers: list[int]) -> str:
     return " ".join(map(str, numbers))
 
 
-def set_dependencies(unknown: Element, on: set[int]) -> None:
-    """Say on which variables an output depends, by position or value reference."""
-    unknown.set("dependencies", joined(sorted(on)))
-    if on:
-        unknown.set("dependenciesKind", " ".join(["dependent"] * len(on)))
-
-
 def child(parent: Element, tag: str) -> Element:
     """A child element that is there."""
     return next(parent.iterfind(tag))

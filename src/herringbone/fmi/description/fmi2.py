@@ -16,7 +16,6 @@ from herringbone.fmi.description.common import (
     initial,
     joined,
     root_element,
-    set_dependencies,
     sizes,
     starting,
     type_name,
@@ -151,8 +150,8 @@ def _add_structure(
             continue
         index = str(position[variable.name])
         inputs = [position[name] for name in interface.feedthrough(declaration, variable)]
-        unknown = SubElement(outputs, "Unknown", index=index)
-        set_dependencies(unknown, {*inputs, *exchanged})
+        known = sorted({*inputs, *exchanged})
+        SubElement(outputs, "Unknown", index=index, dependencies=joined(known))
         SubElement(unknowns, "Unknown", index=index, dependencies=joined(sorted({*inputs, *exact})))
 
 

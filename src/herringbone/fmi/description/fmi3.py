@@ -22,7 +22,6 @@ from herringbone.fmi.description.common import (
     initial,
     joined,
     root_element,
-    set_dependencies,
     sizes,
     starting,
     type_name,
@@ -190,8 +189,8 @@ def _add_structure(
             continue
         scalars = [declaration.index[name] for name in variable.feedthrough]
         inputs = {*scalars, *(first + 1 for first in scalars)} & set(references)
-        output = SubElement(structure, "Output", valueReference=str(reference))
-        set_dependencies(output, inputs | states)
+        known = sorted(inputs | states)
+        SubElement(structure, "Output", valueReference=str(reference), dependencies=joined(known))
         unknowns.append(
             Element(
                 "InitialUnknown",

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from herringbone.components.resources.stiffness_table import mesh_harmonics
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
@@ -95,7 +96,7 @@ class MeshStiffness:
 
         Zero where the stiffness is.
         """
-        amplitudes = np.abs(np.fft.rfft(self.secant, axis=1))[:, 1:] * 2.0 / self.phases.size
+        amplitudes = mesh_harmonics(self.secant)
         mean = self.secant.mean(axis=1, keepdims=True)
         return np.divide(amplitudes, mean, out=np.zeros_like(amplitudes), where=mean > 0.0)
 

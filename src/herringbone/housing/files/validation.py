@@ -70,9 +70,9 @@ def _check_oscillators(housing: ModalHousing) -> None:
     for n, (kind, f, zeta) in enumerate(rows, 1):
         if kind not in KINDS:
             raise ResourceError(f"mode {n}: kind '{kind}' is none of {', '.join(KINDS)}")
-        if not np.isfinite(f) or f < 0.0 or (f == 0.0 and kind != "rigid"):
+        if not np.isfinite(f) or f < 0.0 or (f == 0.0) != (kind == "rigid"):
             raise ResourceError(
-                f"mode {n}: frequency {f:g} Hz must be positive and finite (0 only if rigid)"
+                f"mode {n}: frequency {f:g} Hz must be positive and finite, and 0 if rigid"
             )
         if not 0.0 < zeta < 1.0 and not (kind == "rigid" and zeta == 0.0):
             raise ResourceError(f"mode {n}: damping ratio {zeta:g} must lie between 0 and 1")

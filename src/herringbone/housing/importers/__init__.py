@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from herringbone.core import ResourceError
+from herringbone.core.reduction import BAND, TOLERANCE
 from herringbone.housing.files.reader import read_compliance
 from herringbone.housing.importers.dmig import read_dmig
 from herringbone.housing.importers.frd import read_frd
@@ -35,9 +36,9 @@ def import_housing(
     files: Sequence[str | Path],
     seats: str | Path | None,
     *,
-    band_hz: float,
-    tolerance: float,
     most_modes: int,
+    band_hz: float | None = None,
+    tolerance: float | None = None,
     progress: Callable[[str], None] = lambda what: None,
 ) -> ModalHousing:
     """Import a housing.
@@ -45,8 +46,9 @@ def import_housing(
     Args:
         files: one file; for Matrix Market stiffness, mass and perhaps the seat input.
         seats: file of seats, see `seat_file`; needed but for Matrix Market with seat input.
-        band_hz, tolerance, most_modes: of the reduction of matrices, see `reduce_model`; modes are
-            taken as they are.
+        most_modes: of the reduction of matrices, see `reduce_model`.
+        band_hz, tolerance: likewise, those of `core.reduction` if not given. Modes are taken as
+            they are, whatever these say.
         progress: called with what begins.
 
     Raises:
@@ -55,13 +57,22 @@ def import_housing(
     paths = [Path(file) for file in files]
     suffix = paths[0].suffix.lower()
     where = read_seats(seats) if seats is not None else None
-    if suffix == ".mtx" or suffix in _MATRICES:
+    if is_matrix(paths[0]):
         read = _MATRICES.get(suffix)
         model = read(_only(paths)) if read else read_matrix_market(paths)
+        if where is not None and where.static is not None:
+            raise ResourceError(
+                f"{where.path}: static = {where.static}: of modes; the static compliance of "
+                "matrices follows from them: leave it out"
+            )
         return housing_from_matrices(
-            model, where, band_hz=band_hz, tolerance=tolerance, most_modes=most_modes,
+            model,
+            where,
+            band_hz=BAND if band_hz is None else band_hz,
+            tolerance=TOLERANCE if tolerance is None else tolerance,
+            most_modes=most_modes,
             progress=progress,
-        )  # fmt: skip
+        )
     if suffix not in {".frd", ".uff", ".unv"}:
         known = ", ".join([".mtx", ".frd", ".uff", ".unv", *_MATRICES])
         kind = f"'{suffix}'" if suffix else "a file without suffix"
@@ -71,6 +82,11 @@ def import_housing(
     if where is None:
         raise ResourceError(f"{paths[0]}: where are the seats? Give --seats SEATS.toml")
     return _from_modes(_only(paths), suffix, where)
+
+
+def is_matrix(file: Path) -> bool:
+    """True if a file holds matrices, which are reduced; False of modes."""
+    return file.suffix.lower() in {".mtx", *_MATRICES}
 
 
 def _only(paths: Sequence[Path]) -> Path:

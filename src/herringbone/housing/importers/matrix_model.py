@@ -25,6 +25,8 @@ _DAMPING = 0.01
 _SLOWEST = 1e-2
 """Hz at which no node of a housing shakes on the springs around it."""
 _MOST_ROWS = 10**7
+_SAME_MASS = 1e-5
+"""Difference of the masses along three axes that rounding of a file may make."""
 """More rows than any model that can be reduced here."""
 
 
@@ -201,12 +203,29 @@ def _labels(model: MatrixModel, seats: SeatFile) -> Mapping[Row, int]:
                 f"{seats.path}: the matrices have {size} rows without labels, which are not 3 per "
                 "node; give [matrix] rows, a file of 'node.axis' lines"
             )
+        _check_translations(model, seats)
         rows = tuple((row // 3 + 1, row % 3 + 1) for row in range(size))
     if len(rows) != size:
         raise ResourceError(
             f"{seats.rows or seats.path}: {len(rows)} labels for matrices of {size} rows"
         )
     return {row: i for i, row in enumerate(rows)}
+
+
+def _check_translations(model: MatrixModel, seats: SeatFile) -> None:
+    """Refuse rows that are not x, y and z of each node: a mass is the same in all directions.
+
+    Six rows per node are a multiple of three, too, and seats would be taken at other nodes.
+    """
+    mass = sp.csr_array(model.mass)
+    along = np.array([mass[k::3, k::3].sum() for k in range(3)])
+    if np.ptp(along) > _SAME_MASS * np.abs(along).max():
+        ratios = ", ".join(f"{share:.4g}" for share in along / along[0])
+        raise ResourceError(
+            f"{seats.path}: the matrices have {mass.shape[0]} rows without labels; as x, y, z of "
+            f"each node their masses along the axes would be as {ratios}: nodes have rotations, or "
+            "rows are missing; give [matrix] rows, a file of 'node.axis' lines"
+        )
 
 
 def _selected_input(

@@ -1,6 +1,6 @@
 """The pictures that a study's folder gets."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -121,6 +121,7 @@ def _uncertain(
     table = points.table
     if TORQUE in points.numbers:
         table = table[table[TORQUE] == table[TORQUE].max()]
+    table = _middle(points, table, varied=own)
     middle = _middle(points, table)
     along = SPEED if SPEED in points.numbers else None
     for group in points.groups:
@@ -133,24 +134,28 @@ def _uncertain(
             varied = sensitivities(table, level, own, along)
             alone = found[~found[PARAMETER].isin(own)]
             found = pd.concat([part for part in (alone, varied) if len(part)] or [varied])
+        none = f"no tornado.{group}.png: no point has a level and sensitivities of it"
         if not len(found) or not middle[level].notna().any():
-            missing.append(f"no tornado.{group}.png: no point has a level and sensitivities of it")
+            missing.append(none)
             continue
         if along is None:
             tornados[group] = found, level
             continue
         speed, values = middle[SPEED].to_numpy(float), middle[level].to_numpy(float)
+        known = np.isin(speed, found[SPEED].to_numpy(float)) & np.isfinite(values)
+        if not known.any():
+            missing.append(none)
+            continue
         bands[group] = band(speed, values, found, SPEED)
-        known = np.isin(speed, found[SPEED].to_numpy(float))
         at = float(speed[known][np.nanargmax(values[known])])
         tornados[group] = found[found[SPEED] == at], f"{level} at {at:g} r/min"
     return bands, tornados, missing
 
 
-def _middle(points: Points, table: pd.DataFrame) -> pd.DataFrame:
-    """Rows along the speed at which all other parameters have their base values."""
+def _middle(points: Points, table: pd.DataFrame, varied: Sequence[str] = ()) -> pd.DataFrame:
+    """Rows along the speed at which all other parameters but some have their base values."""
     for name in points.parameters:
-        if name in {SPEED, TORQUE}:
+        if name in {SPEED, TORQUE, *varied}:
             continue
         values = table[name]
         base = base_value(values) if name in points.numbers else values.iloc[0]

@@ -56,6 +56,24 @@ def test_bad_matrices(matrix_files, placed, seats, tmp_path):
     assert "M.mtx is no valid Matrix Market file" in text([stiffness, mass])
 
 
+def test_rows_that_are_not_three_per_node(placed, tmp_path):
+    """Two nodes with rotations would pass for four nodes without."""
+    files = [tmp_path / "K.mtx", tmp_path / "M.mtx"]
+    mass = np.diag(np.tile([2.0, 2.0, 2.0, 1e-3, 2e-3, 3e-3], 6))
+    scipy.io.mmwrite(files[0], sp.eye_array(36).tocoo())
+    scipy.io.mmwrite(files[1], sp.coo_array(mass), precision=17)
+    said = refusal(lambda: load(files, placed))
+    assert "36 rows without labels; as x, y, z of each node their masses along the axes" in said
+    assert "as 1, 1, 1.001" in said
+    assert "nodes have rotations" in said
+
+
+def test_static_compliance_is_of_modes(matrix_files, placed):
+    placed.write_text(placed.read_text().replace("[units]", 'static = "nowhere.csv"\n[units]', 1))
+    assert "static = " in (said := refusal(lambda: load(matrix_files[:2], placed)))
+    assert "leave it out" in said
+
+
 def test_sample_of_seats():
     """What the sample says, in SI units."""
     sample = read_seats(component_folder("modal_housing") / "seats.toml")
