@@ -59,5 +59,7 @@ def test_wrong_input_is_one_line(tmp_path, capsys, arguments, said):
 def test_a_point_that_came_to_nothing_makes_an_exit_code(tmp_path, capsys):
     """Nothing holds teeth together without load."""
     arguments = ["sweep", "gearbox", "--speed", "1000", "--torque", "0,150", "-o", str(tmp_path)]
+    (tmp_path / "tornado.bearing_force.png").touch()  # of an earlier study
     assert main([*arguments, "--json"]) == 1
+    assert not list(tmp_path.glob("tornado.*"))
     assert json.loads(capsys.readouterr().out)["outcomes"] == {"steady": 1, "not_converged": 1}

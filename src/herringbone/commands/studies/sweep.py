@@ -127,10 +127,14 @@ def run(options: argparse.Namespace) -> int:
             told=lambda ahead: tqdm.write(ahead, file=sys.stderr),
             progress=bar.update,
         )
-    from herringbone.plotting.studies.pictures import write_study_pictures  # noqa: PLC0415
+    from herringbone.plotting.studies.pictures import (  # noqa: PLC0415 (matplotlib)
+        remove_others,
+        write_study_pictures,
+    )
 
     title = ": ".join(filter(None, (Path(options.system).stem, found.of)))
     drawn = write_study_pictures(found.table, found.units, folder, title, spread)
+    remove_others(folder, drawn.files)
     for line in drawn.missing:
         say(line)
     files_told = [str(folder / file.name) for file in (*found.files, *drawn.files)]

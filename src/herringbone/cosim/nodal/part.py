@@ -1,10 +1,12 @@
 """A part that holds its inputs, as one that takes and gives polynomial signals."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
+from herringbone.core import FmuError
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.declaring.variable import NODES
 from herringbone.core.part import Addresses, Part, PartVariable, ValueOrArray
@@ -150,6 +152,13 @@ class NodalPart(PartAdapter):
             self._memory["degree"] = int(float(value))  # type: ignore[arg-type]  # a number
         elif name in self.part.variables:  # nodes of inputs that nothing feeds need no value
             self.part.set(name, value)
+
+    def exit_initialization(self) -> None:
+        """See `Part`. A rate that nothing feeds stays as it starts, and its integral goes on."""
+        for k in {k for k in self._arrays["rate"].tolist() if k >= 0}:
+            with suppress(FmuError):  # what cannot be read starts at 0
+                self._arrays["given"][k] = self.part.get([self._inputs[k]])[0]
+        super().exit_initialization()
 
     def get(self, names: Sequence[str]) -> list[float]:
         """Values of real variables of the part, and of its signals' nodes, which only this has."""

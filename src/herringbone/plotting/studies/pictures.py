@@ -28,6 +28,7 @@ from herringbone.plotting.studies.waterfall import waterfall
 
 SPREAD = 1.0
 """Of parameters that nobody has measured, if nothing else is said: a factor of 2."""
+_PICTURES = "levels.png", "map.png", "tornado.*.png", "waterfall.*.png"
 
 
 class StudyPictures(NamedTuple):
@@ -83,6 +84,13 @@ def write_study_pictures(
             continue
         files.append(_written(figure, file))
     return StudyPictures(files, missing)
+
+
+def remove_others(folder: Path, files: Sequence[Path]) -> None:
+    """Remove pictures of an earlier study in its folder, which the present one does not have."""
+    for pattern in _PICTURES:
+        for file in set(folder.glob(pattern)) - set(files):
+            file.unlink()
 
 
 def write_steady_pictures(

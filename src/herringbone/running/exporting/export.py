@@ -190,7 +190,8 @@ def export_ssp(
     structure, chosen = ready(system, scene, wishes)
     step = parallel_step(structure) if step is None else step
     step = make_grid(chosen.t_end, step, step).step
-    if late := told_late(system, structure, step):
+    changed = scene is not None or any((values, gear, housing))
+    if late := told_late(system, structure, step, changed=changed):
         _log.warning(late)
     own = [part for part in structure.parts if not part.foreign]
     if native:

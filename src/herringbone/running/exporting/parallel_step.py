@@ -21,15 +21,24 @@ UNKNOWN = 2e-6
 _log = logging.getLogger(__name__)
 
 
-def told_late(reference: str | Path, system: System, step: float) -> str:
-    """How to find what such masters err by a step [s]; "" where no part answers to another one."""
+def told_late(reference: str | Path, system: System, step: float, *, changed: bool) -> str:
+    """How to find what such masters err by a step [s]; "" where no part answers to another one.
+
+    Args:
+        reference: what was exported.
+        system: the same, as it was exported.
+        step: [s].
+        changed: a scene, values, gears or housings were given.
+    """
     if not system.connections:
         return ""
+    same = ", with the scene, values, gears and housings of this export" if changed else ""
     error = "--verify" if system.foreign_parts else "--reference"
     return (
         f"communication step {quantity(step, 's')}: masters that step all parts in parallel see "
         f"elements one step late, and err in proportion to it: 'herringbone run {reference} "
-        f"--algorithm jacobi:order=0,schedule=parallel --step {step:g} {error}' tells by how much"
+        f"--algorithm jacobi:order=0,schedule=parallel --step {step:g} {error}'{same} tells by how "
+        "much"
     )
 
 

@@ -14,6 +14,7 @@ from herringbone.core import ParameterError
 from herringbone.core.facts import Facts
 from herringbone.core.places.files import as_texts
 from herringbone.core.process.one_thread import one_blas_thread
+from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.at_point import prepared_at
@@ -100,7 +101,8 @@ def plan(
         chart: also solve joint choices of model and tolerance, for a picture; of steady states.
 
     Raises:
-        ParameterError: the scene asks nothing, or what it asks is not there.
+        ParameterError: the scene asks nothing, or what it asks is not there; or a chart of
+            transients is asked for.
         HerringboneError: something about the input is wrong, or a part is a foreign FMU.
     """
     begin, charted = time.process_time(), None
@@ -111,6 +113,10 @@ def plan(
             f"scene {asking.name}: it asks nothing; add [[ask]], see docs/plans.md"
         )
     if asking.operating.motion is Motion.TRANSIENT:
+        if chart:
+            raise ParameterError(
+                f"{option('chart', True)}: of steady states; scene {asking.name} asks of transients"
+            )
         found = prepared(system, scene, own)
         refuse_foreign_parts(found.system, "no plan can be certified")
         core = Core(found.system)
