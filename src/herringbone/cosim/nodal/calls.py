@@ -114,7 +114,9 @@ def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
     if status > LAST_GOOD:
         return types.int32(status)
     part = whole[0]
-    measure_if_suspected(whole)
+    status = measure_if_suspected(whole)
+    if status > LAST_GOOD:
+        return types.int32(status)
     whole[0].saved_time = part.state_time
     return types.int32(state_call(part.get_state, part.component, handle))
 

@@ -67,20 +67,23 @@ def compare(memory: np.ndarray, node: int, time: float, step: float) -> None:
 
 
 @allocating
-def measure_if_suspected(memory: np.ndarray) -> None:
-    """Measure D at the present state, if a step before has shown that it may be another one."""
+def measure_if_suspected(memory: np.ndarray) -> int:
+    """Measure D at the present state, if a step before has shown that it may be another one.
+
+    FMI status: bad if the part does not come back to that state.
+    """
     part = memory[0]
     memory[0].resting = max(0, part.resting - 1)
     ended = part.state_time == part.seen_time + part.seen_step
     if part.watched == 0 or part.suspected == 0 or part.resting > 0 or not ended:
-        return
+        return 0
     memory[0].suspected = 0
     status = state_call(part.get_state, part.component, part.trial_state)
     handle = carray(at_address(part.trial_state), 1, np.int64)
     changed = False
     if status > LAST_GOOD:
         memory[0].watched = 0
-        return
+        return 0
     for i in range(part.inputs):
         driven = carray(at_address(part.driven), part.inputs, np.int64)
         if driven[i] == 0:
@@ -89,9 +92,10 @@ def measure_if_suspected(memory: np.ndarray) -> None:
             memory[0].watched = 0  # it refuses such steps: what was known stays
             break
         changed |= _update(memory, i)
-    state_call(part.set_state, part.component, handle[0])
+    back = state_call(part.set_state, part.component, handle[0])
     state_call(part.free_state, part.component, part.trial_state)
     memory[0].resting = 0 if changed else _RESTING
+    return back
 
 
 @allocating

@@ -12,6 +12,9 @@
 #endif
 #if defined _WIN32
 #include <windows.h>
+enum { ON_WINDOWS = true };
+#else
+enum { ON_WINDOWS = false };
 #endif
 
 static bool is_utf8(const unsigned char *text, size_t length) {
@@ -114,14 +117,12 @@ char *platform_path(const char *location) {
     if (strncmp(location, "file:", 5) != 0)
         return memcpy(path, location, length + 1);
     const char *from = location + 5;
-    if (strncmp(from, "//", 2) == 0) { /* an authority, empty or "localhost", ends at a slash */
-        from += 2;
-        from += strcspn(from, "/");
+    if (strncmp(from, "//", 2) == 0) { /* an authority, empty or a host, ends at a slash */
+        const char *host = from + 2;
+        size_t named = strcspn(host, "/");
+        bool share = ON_WINDOWS && named && strncmp(host, "localhost/", 10) != 0;
+        from = share ? from : host + named;
     }
-#if defined _WIN32
-    if (from[0] == '/' && from[1] && from[2] == ':')
-        from++;
-#endif
     char *to = path;
     while (*from) {
         int high = from[0] == '%' ? hex_digit(from[1]) : -1;
@@ -130,6 +131,8 @@ char *platform_path(const char *location) {
         from += low >= 0 ? 3 : 1;
     }
     *to = '\0';
+    if (ON_WINDOWS && path[0] == '/' && path[1] && path[2] == ':') /* "/C:/", also as "/C%3A/" */
+        memmove(path, path + 1, strlen(path));
     return path;
 }
 
