@@ -139,7 +139,8 @@ class ShaftTorque(NamedTuple):
 
     Attributes:
         column: of a coupling, or of another part at the gear's flange.
-        sign: of what drives the gearbox; -1 where the column is what acts on the wheel.
+        sign: of what drives the gearbox; -1 where the column is what acts on the wheel, or is of a
+            coupling that hands it the other way.
     """
 
     column: str
@@ -156,10 +157,20 @@ def shaft_torques(result: Result, gear: str = "") -> dict[str, ShaftTorque]:
         coupling = shaft_side(result, place, gear).coupling
         column = coupling and column_of(result, Role.COUPLING, Quantity.TORQUE, part=coupling)
         if column:
-            found[place] = ShaftTorque(column)
+            found[place] = ShaftTorque(column, _handed_on(result, coupling, place, gear))
         elif not coupling and (column := flange_torque(result, place, gear)):
             found[place] = ShaftTorque(column, 1.0 if place == GEARS[0] else -1.0)
     return found
+
+
+def _handed_on(result: Result, coupling: str, place: str, gear: str) -> float:
+    """1.0 if a coupling's torque, from its first flange to its second, goes to load from drive."""
+    anatomy = result.info.anatomy
+    first, *_ = (port.name for port in anatomy.ports(coupling, PortKind.FLANGE))
+    gears = (gear,) if gear else result.parts_with(Role.GEAR_PAIR)[:1]
+    joined = [end for name in gears for end in anatomy.joined(name, PortKind.FLANGE, place)]
+    from_gear = (coupling, first) in joined
+    return 1.0 if from_gear == (place == GEARS[1]) else -1.0
 
 
 def flange_torque(result: Result, place: str, gear: str = "") -> str | None:

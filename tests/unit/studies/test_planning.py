@@ -166,6 +166,12 @@ def test_tests_are_not_probes():
     assert points_to_test(one) == points_to_probe(one)
 
 
+@pytest.mark.parametrize("torque", [(-100.0, 100.0), (0.0, 100.0)])
+def test_torques_of_both_flanks_are_asked_for_one_at_a_time(torque):
+    with pytest.raises(ParameterError, match=r"the other flank carries.*one sign at a time"):
+        points_to_probe(Operating(torque=torque))
+
+
 def test_of_a_hundredth_of_a_percent_nothing_beyond_half_of_it_is_left_out():
     found = plan("test_rig", scene=_scene(Ask(("seat velocity",), tolerance=1e-4)))
     for rung in found.rungs:

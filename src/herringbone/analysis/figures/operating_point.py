@@ -160,10 +160,11 @@ def power_balance(result: Result) -> PowerBalance | None:
         values[rows] for values in needed if values is not None
     )
     mechanical = float((torque * speed).mean())
+    given = pinion.sign * result.data[pinion.column].to_numpy()[rows]
     return PowerBalance(
         float(drive.mean()),
         float(recovered.mean()),
-        float((result.data[pinion.column].to_numpy()[rows] * pinion_speed).mean()),
+        float((given * pinion_speed).mean()),
         float(drive.mean()) - mechanical,
         float(load_loss.mean()),
         mechanical - float((recovered + load_loss).mean()),

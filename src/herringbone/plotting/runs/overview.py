@@ -20,6 +20,8 @@ from herringbone.plotting.style import COLOURS, draw_line, legend, new_figure, s
 from herringbone.result.result import TIME, Result
 
 _ABOVE_ORDERS = 0.06
+_AGAINST = {"pinion": "torque of", "wheel": "torque on"}
+"""What a column is called that counts against the way from drive to load."""
 Panel = Callable[[Axes], None]
 
 
@@ -82,7 +84,7 @@ def _draw(result: Result, panels: dict[str, Panel]) -> Figure:
 def _torque_and_speed(axes: Axes, result: Result) -> None:
     """Torques [N m] on the left axis, pinion speed [r/min] on the right one."""
     names = {
-        f"{gear} torque" if torque.sign > 0.0 else f"torque on the {gear}": torque.column
+        f"{gear} torque" if torque.sign > 0.0 else f"{_AGAINST[gear]} the {gear}": torque.column
         for gear, torque in shaft_torques(result).items()
     }
     time_panel(axes, result, names, "torque", unit="N m")

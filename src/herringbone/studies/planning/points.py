@@ -6,6 +6,7 @@ from itertools import product
 import numpy as np
 
 from herringbone.analysis.steady.set_points import Point
+from herringbone.core import ParameterError
 from herringbone.scenes.asking import Operating, Range
 
 TESTS, _FEW = 12, 6
@@ -22,7 +23,17 @@ def first_point(operating: Operating) -> Point:
 
 
 def points_to_probe(operating: Operating) -> list[Point]:
-    """Ends and middle of the ranges; the scene's own point without any."""
+    """Ends and middle of the ranges; the scene's own point without any.
+
+    Raises:
+        ParameterError: torques of both signs, or none.
+    """
+    if operating.torque is not None and operating.torque[0] <= 0.0 <= operating.torque[1]:
+        low, high = operating.torque
+        raise ParameterError(
+            f"torque = [{low:g}, {high:g}]: no load holds the teeth at 0 N m, and beyond it the "
+            "other flank carries, with another line of action; ask for one sign at a time"
+        )
     ends = {"speed": operating.speed, "torque": operating.torque}
     values = {key: _at(given, _PROBES[key]) for key, given in ends.items()}
     return [Point(speed, torque) for torque, speed in product(values["torque"], values["speed"])]

@@ -45,7 +45,8 @@ def compute() -> Outcome:
 
 
 def _powers(result: Result) -> pd.DataFrame:
-    pinion = result.data[shaft_torques(result)["pinion"].column].to_numpy()
+    at = shaft_torques(result)["pinion"]
+    pinion = at.sign * result.data[at.column].to_numpy()
     speed = signal(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion")
     found = {
         "time": result.data[TIME].to_numpy(),

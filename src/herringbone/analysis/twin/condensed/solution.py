@@ -43,7 +43,9 @@ CLOSE = 1e-8
 Every correction makes it a thousand times smaller, or more, wherever no law bends."""
 COARSE = 0.1
 """Such a residual from which on errors of 1e-3 are wanted: fine directions are left out then, and
-single precision is enough for matrices."""
+single precision is enough for matrices, as long as no law bends."""
+_SHORT = 1e-5
+"""Base steps [s] so short that what single precision errs in each of them adds up."""
 _LEAN_AHEAD = 2
 """Degree of the prediction over long steps, where a higher one goes farther off."""
 _NEGLIGIBLE = 1e-5
@@ -98,6 +100,7 @@ class Solution:
         if not coarse:
             sharp = np.concatenate([sharp, system.fine])
         self._shape = Shape(degree, lean, system.directions, sharp, system.stiff, lean and coarse)
+        self._double = np.array([not self._shape.short])
         turned = np.broadcast_to(modes.of_angles @ modes.angles, (degree, calls.argument[-1]))
         self._fixed = Fixed(
             _filled(np.append(self._shape.rows(turned), np.zeros(2 * modes.angles.size))),
@@ -137,6 +140,8 @@ class Solution:
         """Go on from there."""
         for name, array in self._remembered().items():
             array[...] = saved[name]
+        if self._double[0] == self._shape.short:
+            self._make_matrices()
         self.matrices.renew()
 
     def _remembered(self) -> dict[str, np.ndarray]:
@@ -144,7 +149,7 @@ class Solution:
         table = {"scale": self._table.scale, "least": self._table.least}
         return {
             **self.state._asdict(), **table, "indicators": nodes.e[0], "arguments": nodes.start,
-            "reference": self._reference,
+            "reference": self._reference, "double": self._double,
         }  # fmt: skip
 
     def enter(self, t0: float, t1: float) -> None:
@@ -196,15 +201,28 @@ class Solution:
         if t1 <= t0:
             samples.held[:] = np.concatenate([self.state.q, self._ends])
         else:
-            rungs = self.matrices.of(h)
-            asked = Asked(rungs, samples, t0, round((t1 - t0) / h))
+            asked = Asked(self.matrices.of(h), samples, t0, round((t1 - t0) / h))
             status = RUNG_WANTED
             while status == RUNG_WANTED:
-                self.matrices.make(rungs, int(self.state.place[RUNG]))
+                rung = int(self.state.place[RUNG])
+                if self._shape.short and (rung > 0 or h < _SHORT):
+                    self._double[0] = True
+                    self._make_matrices()
+                    asked = asked._replace(rungs=self.matrices.of(h))
+                self.matrices.make(asked.rungs, rung)
                 status = march(self.arrays, asked)
             if status != DONE:
-                self._fail(status, t0, rungs)
+                self._fail(status, t0, asked.rungs)
         return Samples(*(array[:count] for array in samples))
+
+    def _make_matrices(self) -> None:
+        """In double precision once a step is halved, as where a law bends, and of short steps.
+
+        Values far from those at the start of the piece, as of teeth apart, have to cancel what mean
+        tangents stand for: single precision would err as a force does.
+        """
+        self._shape = self._shape._replace(short=not self._double[0])
+        self.matrices = StepMatrices(self._system, self._shape, self._reference)
 
     def _begin(self, t: float) -> None:
         """The laws' inputs and indicators at the start of a piece, as if a step had ended there."""

@@ -6,6 +6,7 @@ states and inputs, which are affine.
 """
 
 from collections.abc import Sequence
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -24,6 +25,9 @@ _SAME = 1e-9
 """Of the terms that are added: a difference below is rounding."""
 _SPREADS = (0.0, 1e-3, -1e-2, 0.1, -1.0, 1.0, -10.0, 100.0)
 """Sizes of the places around the start at which rows are checked."""
+_LATE, _BETWEEN = 1e3, 2
+"""Time [s] after which nothing is brought in any more; breakpoints before which it is looked, too.
+"""
 _SEED = 23
 _MOST_PLACES = 64
 """Places in steps whose rows are kept; more come of records that no steps fit."""
@@ -180,7 +184,10 @@ class _Rows:
 
 
 def affine_places(system: Condensed) -> np.ndarray:
-    """Whether each of the places that are seen is affine; (seen,)."""
+    """Whether each of the places that are seen is affine; (seen,).
+
+    Looked at at several times: what rises from zero hides what it is multiplied by.
+    """
     twin, equations = system.twin, system.equations
     calls = system.calls()
     values = int(calls.value[-1])
@@ -188,27 +195,35 @@ def affine_places(system: Condensed) -> np.ndarray:
     found = np.ones(places.size, dtype=bool)
     drawn = np.random.default_rng(_SEED)
     size = np.maximum(np.abs(twin.state), 1e-3)
-    for spread in _SPREADS:
+    for spread, t in product(_SPREADS, _times(twin)):
         x = twin.state + spread * size * drawn.uniform(0.5, 2.0, size.size)
         u = np.zeros(equations.channels)
-        twin.observe(np.zeros(1), x[:, None], [])
+        twin.observe(np.array([t]), x[:, None], [])
         u[values:-1] = twin.block[[place for _, place in equations.signals]]
         u[-1] = 1.0
-        u[:values] = _forces(system, equations.c @ x + equations.d @ u)
+        u[:values] = _forces(system, equations.c @ x + equations.d @ u, t)
         y = equations.e @ x + equations.g @ u
         terms = np.abs(equations.e) @ np.abs(x) + np.abs(equations.g) @ np.abs(u)
         found &= ~(np.abs(twin.block[places] - y) > _SAME * np.maximum(terms, 1e-300))
     return found
 
 
-def _forces(system: Condensed, z: np.ndarray) -> np.ndarray:
-    """Values of all laws at their arguments."""
+def _times(twin: Twin) -> list[float]:
+    """The start, between the first breakpoints, and when nothing is brought in any more [s]."""
+    ends = [0.0, *twin.breakpoints(_LATE)][: _BETWEEN + 1]
+    return [0.0, *(0.5 * (one + other) for one, other in pairwise(ends)), _LATE]
+
+
+def _forces(system: Condensed, z: np.ndarray, t: float) -> np.ndarray:
+    """Values of all laws at their arguments and a time [s]."""
     found, at = [], 0
     for p in system.equations.laws:
         instance = system.twin.instances[p]
         laws, block = laws_of(instance), instance.block.copy()
         assert laws is not None
         laws.prepare(block)
+        if laws.clock is not None:
+            block[laws.clock] = t
         f = np.zeros(len(laws.values))
         own = z[at : at + len(laws.arguments)].copy()
         laws.evaluate(block, own, f, np.zeros(len(laws.stiff)), np.zeros(max(laws.kinks, 1)))
