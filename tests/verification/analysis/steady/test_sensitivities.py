@@ -63,3 +63,39 @@ def test_dampings_of_a_housing_have_a_sensitivity(tmp_path):
         levels.append(hb.steady("test_rig", values=values, tolerance=1e-6).level("seat_velocity"))
     found = sensitivities(state, "seat_velocity", [name])[name].relative
     assert found == pytest.approx(np.log(levels[0] / levels[1]) / np.log(1.01 / 0.99), rel=1e-3)
+
+
+def test_a_backlash_that_only_turns_the_wheel_changes_nothing():
+    """On the coast flank it moves the contact by many times its deflection, and levels not at all.
+
+    Per part of itself, 180 um, where the deflection is some 4 um: what is left is rounding.
+    """
+    state = hb.steady("test_rig", torque=-50.0, values=STILL, tolerance=1e-7)
+    name = "gear_mesh.backlash"
+    assert abs(sensitivities(state, "bearing_force", [name])[name].relative) < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("speed_factor", 1.0), ("torque_factor", 1.0), ("gear_ratio", 3.0)]
+)
+def test_parameters_that_command_the_operating_point(name, value):
+    """They act on what is given, also on the period."""
+    path = f"bench_controller.{name}"
+    state = hb.steady("test_rig", values=STILL, tolerance=1e-7)
+    found = sensitivities(state, "bearing_force", [path])[path]
+    sides = [
+        hb.steady("test_rig", values={**STILL, path: value * (1.0 + e)}, tolerance=1e-7)
+        for e in (5e-4, -5e-4)
+    ]
+    levels = [side.level("bearing_force") for side in sides]
+    assert found.derivative == pytest.approx((levels[0] - levels[1]) / (1e-3 * value), rel=1e-3)
+
+
+def test_at_the_end_of_a_range_and_of_whole_numbers():
+    """One side alone is looked at; whole numbers have no neighbours."""
+    values = {**STILL, "gear_mesh.pinion.torque_share_left": 1.0}
+    state = hb.steady("test_rig", values=values, tolerance=1e-6)
+    found = sensitivities(state, "bearing_force", ["gear_mesh.pinion.torque_share_left"])
+    assert np.isfinite(found["gear_mesh.pinion.torque_share_left"].relative)
+    named = assumed(state.structure.system, ["gear_mesh.*"])
+    assert not [n for n in named if n.endswith(("number_of_teeth", "damping_gate"))]

@@ -83,9 +83,10 @@ class Balance:
         given = self.motion.given
         return np.vstack([on(orders, values, known), on(orders, given, np.arange(given.shape[1]))])
 
-    def with_given(self, channels: np.ndarray) -> np.ndarray:
-        """Channels (channels, harmonics) of all harmonics, with what is given of this motion."""
-        return self._channels(self._every, channels[: self.problem.values], self._every)
+    def with_given(self, channels: np.ndarray, orders: np.ndarray | None = None) -> np.ndarray:
+        """Channels (channels, harmonics) of some orders, or all, with what is given here."""
+        orders = self._every if orders is None else orders
+        return self._channels(orders, channels[: self.problem.values], orders)
 
     def _response(self, speed: float, orders: np.ndarray) -> Response:
         """The linear part at a speed."""

@@ -20,8 +20,8 @@ from herringbone.core.places.part_path import find_columns
 from herringbone.core.places.temporary import temporary_folder
 from herringbone.cosim.structure.system import System
 
-STEP = 1e-3
-"""Change of a parameter, over its value."""
+STEP = 1e-5
+"""Change of a parameter, over its value: laws bend over what a thousandth of a backlash is."""
 _DAMPERS = "damping", "drag"
 """One of these is in the name of a parameter that is a damping."""
 _UNITS = {"N.s/m", "N.m.s/rad"}
@@ -30,11 +30,20 @@ _RATIO = "damping_ratio"
 
 
 class Moved(NamedTuple):
-    """A parameter's value, and the system with it larger and smaller by a share of `STEP`."""
+    """A parameter's value, and the system with it larger and smaller by a share of `STEP`.
+
+    At an end of what it may be it is moved to one side.
+
+    Attributes:
+        value: of the parameter.
+        larger, smaller: the system.
+        apart: difference of the parameter between both.
+    """
 
     value: float
     larger: Structure
     smaller: Structure
+    apart: float
 
 
 class Changes:
@@ -56,6 +65,8 @@ class Changes:
 def assumed(system: System, patterns: Sequence[str] = ()) -> list[str]:
     """Parameters that are not zero: all dampings, or those that match a pattern.
 
+    Parameters of whole numbers have no sensitivity, and are left out.
+
     Raises:
         ParameterError: a pattern matches none that is not zero.
     """
@@ -66,7 +77,9 @@ def assumed(system: System, patterns: Sequence[str] = ()) -> list[str]:
     found: dict[str, None] = {}
     for pattern, own in find_columns(system.paths, every, patterns).items():
         if not own:
-            raise ParameterError(f"sensitivities: '{pattern}' is no parameter that is not zero")
+            raise ParameterError(
+                f"sensitivities: '{pattern}' is no parameter that is not zero, or whole"
+            )
         found.update(dict.fromkeys(own))
     return list(found)
 
@@ -78,11 +91,13 @@ def _is_damping(name: str, unit: str) -> bool:
 
 
 def _parameters(system: System) -> Iterator[tuple[str, str]]:
-    """Names and units of real parameters that are not zero."""
+    """Names and units of real parameters that are not zero, and not whole numbers."""
     for part in system.parts:
         for variable in component(str(part.component)).declaration.variables:
             name = f"{part.name}.{variable.name}"
-            if variable.causality is Causality.PARAMETER and value_at(system, name) != 0.0:
+            counts = variable.whole or variable.quantity is Quantity.NUMBER_OF_TEETH
+            varies = variable.causality is Causality.PARAMETER and not counts
+            if varies and value_at(system, name) != 0.0:
                 yield name, variable.unit
 
 
@@ -110,8 +125,9 @@ def _moved(structure: Structure, name: str) -> Moved:
         value = value_at(system, name)
         if value == 0.0:
             raise ParameterError(f"{name} = 0: a sensitivity is of a parameter that is not zero")
-        sides = [_like(structure, system.with_values({name: value * f})) for f in _FACTORS]
-        return Moved(value, *sides)
+        ends = _ends(system, name, value)
+        larger, smaller = (_like(structure, system.with_values({name: end})) for end in ends)
+        return Moved(value, larger, smaller, ends[0] - ends[1])
     column = str(anatomy(system).column(part, Quantity.MODES))
     sides = []
     for factor in _FACTORS:
@@ -119,7 +135,19 @@ def _moved(structure: Structure, name: str) -> Moved:
             scaled = folder / file.name
             scaled.write_text(_scaled(file, factor), encoding="utf-8")
             sides.append(_like(structure, system.with_values({column: str(scaled)})))
-    return Moved(1.0, *sides)
+    larger, smaller = sides
+    return Moved(1.0, larger, smaller, _FACTORS[0] - _FACTORS[1])
+
+
+def _ends(system: System, name: str, value: float) -> tuple[float, float]:
+    """Values beside one, within what the parameter may be."""
+    part, variable = system.split(name)
+    declared = component(str(system.part(part).component)).declaration.variable(variable)
+    larger, smaller = (value * factor for factor in _FACTORS)
+    return (
+        min(max(larger, declared.minimum), declared.maximum),
+        min(max(smaller, declared.minimum), declared.maximum),
+    )
 
 
 _FACTORS = (1.0 + STEP, 1.0 - STEP)

@@ -24,8 +24,9 @@ from herringbone.analysis.steady.harmonic_balance.correction import (
 from herringbone.analysis.steady.harmonic_balance.krylov import inner
 from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.outputs import level_of
+from herringbone.analysis.steady.searching.guess import motion_at, several
 from herringbone.analysis.steady.sensitivities.adjoint import adjoint_by_families
-from herringbone.analysis.steady.sensitivities.assumed import STEP, Changes, Moved
+from herringbone.analysis.steady.sensitivities.assumed import Changes, Moved
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure, alternating_rows
 from herringbone.core import ParameterError
@@ -90,17 +91,21 @@ def _of(state: SteadyState, columns: Sequence[str], found: _Adjoint, moved: Move
     larger, smaller = (
         _fixed(state, structure, columns, found) for structure in (moved.larger, moved.smaller)
     )
-    derivative = (larger - smaller) / (2.0 * STEP * moved.value)
+    derivative = (larger - smaller) / moved.apart
     return Sensitivity(moved.value, derivative, derivative * moved.value / found.size)
 
 
 def _fixed(
     state: SteadyState, structure: Structure, columns: Sequence[str], found: _Adjoint
 ) -> float:
-    """The level at fixed harmonics, and the adjoint's product with what they lack then."""
+    """The level at fixed harmonics, and the adjoint's product with what they lack then.
+
+    A parameter may command the speed or the torque, too.
+    """
     orders = state.orbit.response.orders
-    balance = Balance(structure.problem, state.orbit.resolved, state.motion)
-    orbit, off = balance.lacking(state.orbit.channels, orders)
+    motion = several(motion_at(structure, state.point), state.meshes // structure.meshes)
+    balance = Balance(structure.problem, state.orbit.resolved, motion)
+    orbit, off = balance.lacking(balance.with_given(state.orbit.channels, orders), orders)
     values = orbit.response.outputs(_rows(structure, columns), orbit.q, orbit.channels)
     return level_of(values) + inner(found.values, off[found.unknown])
 
