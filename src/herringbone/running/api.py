@@ -25,8 +25,8 @@ from herringbone.running.fused.fused import (
 )
 from herringbone.running.housings.fmu_remarks import HousingRemarks, with_remarks
 from herringbone.running.operating.by_hand import said_by_hand
-from herringbone.running.operating.commanded import operated
-from herringbone.running.operating.lean import certified_row, lean_notes
+from herringbone.running.operating.commanded import operated, own_point
+from herringbone.running.operating.lean import certified_row, changed_by, lean_notes
 from herringbone.running.output.by_script import placed
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.pairs.gears import Gear
@@ -178,7 +178,8 @@ def run(
         heard = Heard(progress, place.recorded, place.output)
         if fuse and not structure.foreign_parts:
             check_coupling(algorithm=algorithm, slow=slow, probe=probe)
-            said = (*notes, *lean_notes(chosen.model, values or {}, speed, torque))
+            own = own_point(structure) if chosen.model else (None, None)
+            said = (*notes, *lean_notes(chosen.model, changed_by(wishes), speed, torque, own))
             wanted = FusedAsked(step, tolerance, tuple(record), said, left_out)
             return place.complete(
                 fused_run(structure, chosen, wanted, heard, reference=reference, verify=verify)

@@ -15,7 +15,8 @@ from herringbone.core.wording import speaks_commands
 from herringbone.cosim.structure.system import System
 from herringbone.running.fitted import with_files
 from herringbone.running.loading import load_scene, load_system, with_options
-from herringbone.running.operating.commanded import commanded, with_known_values
+from herringbone.running.operating.commanded import commanded, own_point, with_known_values
+from herringbone.running.operating.lean import changed_by
 from herringbone.running.output.settings import key_of
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes
@@ -115,7 +116,7 @@ def sweep(
     commanded(known.with_values({n: v for n, v in first.items() if n not in SET_POINTS}), first)
     own = with_options(chosen_scene, values=wishes.values)
     files = with_files(structure, own, wishes, folder)
-    leaner = leaner_notes(chosen_scene.model, study, wishes.values)
+    leaner = leaner_notes(chosen_scene.model, study, changed_by(wishes), own_point(known))
     for line in (*files.notes, *files.of_fmus, *leaner):
         told(line)
     settings = base_settings(base, chosen)

@@ -3,26 +3,30 @@
 from collections.abc import Mapping
 
 from herringbone.analysis.set_points import SPEED, TORQUE
-from herringbone.running.operating.lean import lean_notes
+from herringbone.running.operating.lean import Own, lean_notes
 from herringbone.scenes import Model
 from herringbone.scenes.asking import Range
 from herringbone.studies.study import SET_POINTS, Study
 
 
-def leaner_notes(model: Model, study: Study, given: Mapping[str, object]) -> tuple[str, ...]:
+def leaner_notes(
+    model: Model, study: Study, given: Mapping[str, object], own: Own
+) -> tuple[str, ...]:
     """Lines as of one state, see `lean_notes`; nothing of a whole model.
 
     Args:
         model: of the scene.
         study: its points.
-        given: values of all points besides.
+        given: what all points have besides, see `changed_by`.
+        own: speed and torque where the study varies none.
     """
     if not model:
         return ()
     varied = dict.fromkeys(name for name in study.names if name not in SET_POINTS)
     speed = _farthest(study, SPEED, model.speed)
     torque = _farthest(study, TORQUE, model.torque)
-    return lean_notes(model, {**given, **varied}, speed, torque, "at other points of the study")
+    elsewhere = "at other points of the study"
+    return lean_notes(model, {**given, **varied}, speed, torque, own, elsewhere)
 
 
 def _farthest(study: Study, name: str, ends: Range | None) -> float | None:

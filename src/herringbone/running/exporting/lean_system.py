@@ -19,7 +19,7 @@ from herringbone.running.exporting.export import ready
 from herringbone.running.fitted import housings_of
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.commanded import operated
-from herringbone.running.operating.lean import lean_notes
+from herringbone.running.operating.lean import changed_by, lean_notes
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.scenes import Model, Scene
 
@@ -57,7 +57,7 @@ def ready_leaner(
     asked = operated(system, whole, wishes, *lowest)
     own = _as_leaner(prepared(system, whole, asked).system, chosen, asked, folder)
     structure, scene = ready(system, whole, own.wishes)
-    (said,) = lean_notes(chosen.model, wishes.values)
+    (said,) = lean_notes(chosen.model, changed_by(wishes), own=(lowest[0], lowest[1]))
     return replace(structure, description=f"{structure.description}; {said}"), scene, own.held
 
 

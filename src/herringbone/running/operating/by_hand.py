@@ -20,8 +20,8 @@ from herringbone.running.fitted import housings_of
 from herringbone.running.housings.given import split_housings
 from herringbone.running.housings.rigid_ground import rigid_bearings
 from herringbone.running.loading import load_scene, load_system
-from herringbone.running.operating.commanded import with_known_values
-from herringbone.running.operating.lean import SOURCE, certified
+from herringbone.running.operating.commanded import own_point, with_known_values
+from herringbone.running.operating.lean import SOURCE, certified, changed_by
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Model, Scene
 
@@ -114,8 +114,11 @@ def _left_out(
     structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
     chosen = load_scene(folder, scene)
     names, unknown = [], []
-    if chosen.model and not certified(chosen.model, wishes.values, point.speed, point.torque):
-        names.append("leaner model of the scene")
+    known = with_known_values(structure, chosen, wishes)
+    if chosen.model:
+        at = (point.speed, point.torque, own_point(known))
+        if not certified(chosen.model, changed_by(wishes), *at):
+            names.append("leaner model of the scene")
     housings = housings_of(structure, chosen, wishes)
     for part, data in split_housings(housings)[0].items():
         reduced = read_housing(data) if is_folder(data) else None
@@ -127,7 +130,6 @@ def _left_out(
             unknown.append(f"the data that {data} was made of are not there any more")
         else:
             housings[part] = full
-    known = with_known_values(structure, chosen, wishes)
     leaner = bool(names)
     names += [
         f"{part}, replaced by an FMU"

@@ -2,13 +2,15 @@
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from numbers import Real
 from pathlib import Path
 
+from herringbone.analysis.anatomy import value_at
 from herringbone.analysis.set_points import QUANTITIES, SPEED, TORQUE, at_pinion, set_point
 from herringbone.components.registry import component
-from herringbone.core import Instance, ParameterError
+from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system import System
 from herringbone.running.fitted import housings_of
@@ -43,6 +45,20 @@ def with_known_values(system: System, scene: Scene, wishes: Wishes) -> System:
     fmus = split_housings(housings_of(system, scene, wishes))[1]
     system, _ = with_replacements(system, {**wishes.replace_parts, **fmus}, probe=wishes.probe)
     return system.with_values({**scene.values, **as_texts(wishes.values)})
+
+
+def own_point(system: System) -> tuple[float | None, float | None]:
+    """Speed [rad/s] and torque [N m] that a system has; None where nothing in it tells them.
+
+    Args:
+        system: with all its values.
+    """
+    found: dict[str, float] = {}
+    for name in (SPEED, TORQUE):
+        with suppress(HerringboneError, ValueError):
+            ((path, share),) = _values(system, name, 1.0).items()
+            found[name] = value_at(system, path) / share
+    return found.get(SPEED), found.get(TORQUE)
 
 
 def operated(

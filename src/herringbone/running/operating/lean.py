@@ -15,9 +15,14 @@ from herringbone.scenes.asking import Range
 
 if TYPE_CHECKING:
     from herringbone.analysis.twin.condensed.lean import Lean
+    from herringbone.running.prepared import Wishes
 
 SOURCE = "model left out"
 """Row of the error budget that tells a model's error."""
+_ROUNDING = 1e-9
+"""Of an end of a range, which was in other units."""
+Own = tuple[float | None, float | None]
+"""Speed [rad/s] and torque [N m] that a system has."""
 
 
 def lean_of(scene: Scene) -> "Lean":
@@ -52,14 +57,16 @@ def lean_notes(
     changed: Mapping[str, object],
     speed: float | None = None,
     torque: float | None = None,
+    own: Own = (None, None),
     elsewhere: str = "at this operating point",
 ) -> tuple[str, ...]:
     """What a user should know of the error of a leaner model; nothing of a whole one.
 
     Args:
         model: of the scene.
-        changed: values that the caller set besides.
+        changed: what the caller set besides, see `changed_by`.
         speed, torque: operating point that the caller asked for [rad/s, N m].
+        own: the same of the system, where the caller asked for none; None: not known.
         elsewhere: where it is not known, if it is not there.
     """
     if not model:
@@ -75,9 +82,16 @@ def lean_notes(
     if changed:
         names = ", ".join(sorted(changed))
         return (f"{said}was {where}, but is not known with other values of {names}",)
-    if not certified(model, changed, speed, torque):
+    if not certified(model, changed, speed, torque, own):
         return (f"{said}is {where}, but not known {elsewhere}",)
     return (f"{said}is {where}",)
+
+
+def changed_by(wishes: "Wishes") -> dict[str, object]:
+    """What a caller set besides a scene, by name: values, gears, housings, replaced parts."""
+    given = {"gear": wishes.gear, "housing": wishes.housing}
+    named = {name: value for name, value in given.items() if value}
+    return {**wishes.values, **named, **wishes.replace_parts}
 
 
 def certified(
@@ -85,10 +99,12 @@ def certified(
     changed: Mapping[str, object],
     speed: float | None = None,
     torque: float | None = None,
+    own: Own = (None, None),
 ) -> bool:
     """True if the error of a leaner model is known; see `lean_notes`."""
     known = model.error is not None and not changed
-    return known and _within(speed, model.speed) and _within(torque, model.torque)
+    at = _within(speed, own[0], model.speed), _within(torque, own[1], model.torque)
+    return known and all(at)
 
 
 def certified_row(model: Model) -> BudgetRow | None:
@@ -106,8 +122,13 @@ def with_row(result: Result, row: BudgetRow | None) -> Result:
     return replace(result, budget=by_size([*result.budget, row]))
 
 
-def _within(value: float | None, ends: Range | None) -> bool:
-    return value is None or (ends is not None and ends[0] <= value <= ends[1])
+def _within(asked: float | None, own: float | None, ends: Range | None) -> bool:
+    """True if what is asked for, or is there, is where a model was certified."""
+    if ends is None:
+        return asked is None
+    value = own if asked is None else asked
+    slight = _ROUNDING * max(map(abs, ends))
+    return value is not None and ends[0] - slight <= value <= ends[1] + slight
 
 
 def _where(model: Model) -> str:

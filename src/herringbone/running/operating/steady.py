@@ -13,8 +13,8 @@ from herringbone.cosim.tolerance import check_tolerance
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.at_point import NOTHING, prepared_at
 from herringbone.running.operating.by_hand import said_by_hand
-from herringbone.running.operating.commanded import with_known_values
-from herringbone.running.operating.lean import lean_notes, lean_of
+from herringbone.running.operating.commanded import own_point, with_known_values
+from herringbone.running.operating.lean import changed_by, lean_notes, lean_of
 from herringbone.running.operating.settled import LONGEST, settled
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Prepared, Wishes
@@ -108,5 +108,6 @@ def _solver_of(
 ) -> tuple[SteadySolver, tuple[str, ...]]:
     """With the model that the scene leaves, and what is to be said of it."""
     prepared = SteadySolver(found.system, tolerance, lean=lean_of(found.scene), solver=solver)
-    said = lean_notes(found.scene.model, wishes.values, point.speed, point.torque)
+    own = own_point(found.system) if found.scene.model else (None, None)
+    said = lean_notes(found.scene.model, changed_by(wishes), point.speed, point.torque, own)
     return prepared, (*found.notes, *said)

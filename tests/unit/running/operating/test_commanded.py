@@ -9,7 +9,7 @@ import pytest
 from herringbone.analysis.set_points import addressed
 from herringbone.core import ParameterError, StructureError
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.running.operating.commanded import commanded
+from herringbone.running.operating.commanded import commanded, own_point
 
 RPM = math.pi / 30.0
 
@@ -69,3 +69,22 @@ def test_a_cycle_that_moves_is_refused():
     rig = read_system("test_rig").with_values({"bench_controller.cycle": "runup.csv"})
     with pytest.raises(ParameterError, match=r"speed: bench_controller.*from 0 to 104\.72 rad/s"):
         commanded(rig, {"speed": 100.0})
+
+
+@pytest.mark.parametrize(
+    ("system", "speed", "torque"),
+    [
+        ("test_rig", {"bench_controller.speed_factor": 0.5}, {"bench_controller.torque_factor": 2}),
+        ("gearbox", {"gear_mesh.der(angle)": 50.0}, {"gear_mesh.pinion.tau": 30.0}),
+    ],
+)
+def test_the_point_of_a_system(system, speed, torque):
+    """What commands is asked for the values that would give it."""
+    known = read_system(system).with_values({**speed, **torque})
+    found = own_point(known)
+    assert commanded(known, {"speed": found[0]}) == pytest.approx(speed)
+    assert commanded(known, {"torque": found[1]}) == pytest.approx(torque)
+
+
+def test_nothing_tells_the_point_of_an_axle():
+    assert own_point(read_system("e_axle")) == (None, None)
