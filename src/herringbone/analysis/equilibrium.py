@@ -144,6 +144,10 @@ def _beginnings(
     yield guess
     yield from turning(twin, guess)
     if held is not None:
+        answered = Answered(twin, NO_ANSWERS, guess, speeds_up=True)
+        near = swung_out(twin, answered, guess, scales(twin), held)
+        if near is not None:
+            yield near
         return
     refused = None
     if angles:

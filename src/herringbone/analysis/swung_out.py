@@ -13,7 +13,7 @@ from herringbone.analysis.twin.monolithic import Twin
 
 
 def swung_out(
-    twin: Twin, answered: Answered, x: np.ndarray, scale: np.ndarray
+    twin: Twin, answered: Answered, x: np.ndarray, scale: np.ndarray, angle: int | None = None
 ) -> np.ndarray | None:
     """States (n,) near an even rotation; None if nothing may speed up, or they do not get there.
 
@@ -22,13 +22,20 @@ def swung_out(
         answered: the same, with what others answer.
         x: states (n,) to begin from; all shafts begin at the speed of the fastest one.
         scale: sizes of the states (n,).
+        angle: place of the one that stays; that of the fastest shaft if not given.
     """
     if not answered.kept:
         return None
     rotation, fastest = answered.rotation, answered.kept[0]
-    if (angle := _angle_of(twin, x, fastest)) is None:
-        return None
     begin = np.where(rotation != 0.0, rotation * x[fastest], x)
+    if angle is None:
+        speed, angle = fastest, next(iter(_turned_by(twin, x, fastest)), None)
+    else:
+        known = map(int, np.flatnonzero(rotation))
+        of_angle = (i for i in known if angle in _turned_by(twin, x, i))
+        speed = next(of_angle, fastest)
+    if angle is None:
+        return None
     turned = twin.rhs(0.0, begin + rotation) - twin.rhs(0.0, begin)
     turning_on = np.zeros_like(x)
     turning_on[twin.turning] = turned[twin.turning] * x[fastest]
@@ -36,19 +43,19 @@ def swung_out(
     def rate(x: np.ndarray) -> np.ndarray:
         even, faster = (_rate(twin, answered, x, a) for a in (0.0, 1.0))
         by_acceleration = faster - even
-        a = even[fastest] / (1.0 - by_acceleration[fastest])
+        a = even[speed] / (rotation[speed] - by_acceleration[speed])
         return even + a * (by_acceleration - rotation) - turning_on
 
-    moving = np.setdiff1d(np.arange(x.size), [angle, fastest])
+    moving = np.setdiff1d(np.arange(x.size), [angle, speed])
     return Rest(rate, moving, scale).reached(begin)
 
 
-def _angle_of(twin: Twin, x: np.ndarray, speed: int) -> int | None:
-    """The state that turns by a speed, by their places; None if none does."""
+def _turned_by(twin: Twin, x: np.ndarray, speed: int) -> list[int]:
+    """The states that turn by a speed, by their places."""
     faster = x.copy()
     faster[speed] += 1.0
     change = np.abs(twin.rhs(0.0, faster) - twin.rhs(0.0, x))
-    return next((i for i in twin.turning if change[i] > 0.0), None)
+    return [i for i in twin.turning if change[i] > 0.0]
 
 
 def _rate(twin: Twin, answered: Answered, x: np.ndarray, acceleration: float) -> np.ndarray:

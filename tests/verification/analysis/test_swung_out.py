@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from herringbone.analysis.equilibrium import even_acceleration
-from herringbone.analysis.rigid_rotation import names_of_states
+from herringbone.analysis.rigid_rotation import names_of_states, steady_rows
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.registry import COMPONENTS
 from herringbone.running.loading import load_system
+from herringbone.running.prepared import Wishes, prepared
 
 SPEED, TORQUE, RATIO = 104.7, -1500.0, 3.0
 SYSTEM = f"""
@@ -48,3 +49,25 @@ def test_two_stages_that_a_load_stops(tmp_path):
         assert rates[path] == pytest.approx(found / ratio, rel=1e-6), path
     forces = [f"{box}.gear_mesh.mesh_left.force" for box in ("first", "second")]
     assert (twin.observe(np.zeros(1), twin.state[:, None], forces)[0] > 0.0).all()
+
+
+@pytest.mark.parametrize("clearance", [1e-5, 1e-4])
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_a_shaft_within_its_clearance_whose_speed_is_held(gear, clearance):
+    """A controller holds the speed; the shaft hangs free at the start, and nothing holds its teeth.
+
+    Both bearings carry the mesh force, whose torque is that of the rig, in the mean over a mesh:
+    its energy changes by less than 1e-4 of the torque.
+    """
+    values = {f"gearbox.bearing_supports.{gear}.radial_clearance": clearance}
+    start = prepared("test_rig", None, Wishes(values=values)).system
+    twin = Twin(start)
+    rates = np.delete(twin.rhs(0.0, twin.state), steady_rows(twin)[0])
+    assert np.abs(rates).max() < 1e-4
+    columns = [f"gearbox.gear_mesh.mesh_{side}.force" for side in ("left", "right")]
+    force = twin.observe(np.zeros(1), twin.state[:, None], columns)[0].sum()
+    mesh = COMPONENTS["gear_mesh"].declaration
+    arm = mesh.variable("pinion.base_radius").start * np.cos(
+        mesh.variable("base_helix_angle").start
+    )
+    assert force * arm == pytest.approx(200.0, rel=1e-3)
