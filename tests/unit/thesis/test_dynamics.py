@@ -250,7 +250,8 @@ def test_jumps_of_the_sweeps(tmp_path):
     """Both levels of speeds in between, and before it jumps a sweep is a row of steady states.
 
     The upper motion is chaotic: rounding decides its level to a tenth, and to 40 r/min where it
-    falls, so that means are compared, where all processors stay on it.
+    falls, so that means are compared, where all processors stay on it: above the highest fall,
+    2502 r/min, and below where the lower motion begins to grow into its jump.
     """
     found = finding("backlash", "retained")
     assert found.verdict is Verdict.AGREES
@@ -258,7 +259,7 @@ def test_jumps_of_the_sweeps(tmp_path):
     for _, both in jumps.groupby("length"):
         up, down = (both[both["sweep"] == s].sort_values("speed") for s in ("up", "down"))
         assert backlash._jump(up) == pytest.approx(2575.0, abs=40.0)
-        between = [s[s["speed"].between(2537.0, 2573.0)]["bearing force"] for s in (up, down)]
+        between = [s[s["speed"].between(2510.0, 2560.0)]["bearing force"] for s in (up, down)]
         assert between[1].mean() > 1.4 * between[0].mean()
     backlash._write_errors(file := tmp_path / "errors.csv")
     values = {f"{names.GEAR}.tooth_errors": str(file)}
