@@ -98,7 +98,7 @@ def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.
             place = _KINKS * side + flank
             e[place] = 1.0 if pressed or not gated else -1.0
             e[place + 2] = past if gated else 1.0
-            e[place + 4] = 1.0 if gated else depth
+            e[place + 4] = depth  # smooth, so that a contact between two places is seen in it
 
 
 @kernel

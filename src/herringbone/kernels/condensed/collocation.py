@@ -176,10 +176,41 @@ def spread(sharp: Sharp, nodes: Nodes, rows: np.ndarray) -> None:
 
 
 @inlined
-def turned(nodes: Nodes) -> bool:
-    """True if an indicator changes its sign between two nodes of the step."""
+def turned(nodes: Nodes, between: np.ndarray) -> bool:
+    """True if an indicator changes its sign in the step.
+
+    Also twice between two nodes, as of a contact that is over at the next one: by the vertex of the
+    parabola through both and the place midway.
+
+    Args:
+        nodes: of the step.
+        between: (nodes - 1, nodes) values midway, of the polynomial through those at the nodes.
+    """
     for i in range(len(nodes.z)):
         for j in range(len(nodes.e[0])):
             if nodes.e[i, j] * nodes.e[i + 1, j] < 0.0:
                 return True
+    for j in range(len(nodes.e[0])):
+        least = most = abs(nodes.e[0, j])
+        for i in range(len(nodes.z)):
+            size = abs(nodes.e[i + 1, j])
+            least, most = min(least, size), max(most, size)
+        if least < most - least and _hidden(nodes.e[:, j], between):
+            return True
+    return False
+
+
+@inlined
+def _hidden(e: np.ndarray, between: np.ndarray) -> bool:
+    """True if values (nodes,) of one sign have another one between two nodes."""
+    for i in range(len(between)):
+        middle = 0.0
+        for k in range(e.size):
+            middle += between[i, k] * e[k]
+        bend, slope = 0.5 * (e[i] - 2.0 * middle + e[i + 1]), 0.5 * (e[i + 1] - e[i])
+        vertex = middle
+        if abs(slope) < 2.0 * abs(bend):
+            vertex -= 0.25 * slope * slope / bend
+        if vertex * e[i] < 0.0:
+            return True
     return False

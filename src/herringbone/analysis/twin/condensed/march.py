@@ -158,6 +158,7 @@ def _of_degree(degree: int, on: Arrays) -> Arrays:
         fixed.close,
         fixed.lean,
         fixed.sharp,
+        matrix(fixed.between, 0, degree, count),
     )
     own = Nodes(
         matrix(nodes.z, 0, degree, nodes.z.shape[1]),
@@ -198,7 +199,7 @@ def _march(on: Arrays, asked: Asked) -> int:
         given = inputs(fixed.nodes, table.least, u, values, channels, v, work.chosen)
         add_of_inputs(rungs, rung, work.v, work.chosen, given, free)
         solved = _solve_step(on, rungs, rung, t, h)
-        bent = solved and turned(nodes)
+        bent = solved and turned(nodes, fixed.between)
         if rung < last and (bent or not solved):
             place[RUNG], place[LAST] = rung + 1, -1 if not solved else place[LAST]
             state.counted[HALVINGS] += 1

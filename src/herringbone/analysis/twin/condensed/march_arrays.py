@@ -50,6 +50,7 @@ class Fixed(NamedTuple):
         lean: arguments are taken along sharp directions alone at the nodes inside of a step, and
             are linear over the step along others.
         sharp: these directions.
+        between: (nodes - 1, nodes) see `collocation.turned`.
     """
 
     offset: np.ndarray
@@ -59,6 +60,7 @@ class Fixed(NamedTuple):
     close: float
     lean: bool
     sharp: Sharp
+    between: np.ndarray
 
 
 class State(NamedTuple):

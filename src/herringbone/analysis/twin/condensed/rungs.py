@@ -138,6 +138,14 @@ def coefficients(degree: int) -> np.ndarray:
     return np.linalg.inv(np.vander(np.array(LOBATTO[degree]), increasing=True))
 
 
+def midway(degree: int) -> np.ndarray:
+    """(nodes - 1, nodes): values between two nodes each, of the polynomial through all nodes."""
+    nodes = np.array(LOBATTO[degree])
+    middles = 0.5 * (nodes[1:] + nodes[:-1])
+    found: np.ndarray = np.vander(middles, degree + 1, increasing=True) @ coefficients(degree)
+    return found
+
+
 def continued(degree: int, of: int, share: float) -> np.ndarray:
     """(nodes, nodes): values of a step, continued over the next one, whose length is a share of it.
 

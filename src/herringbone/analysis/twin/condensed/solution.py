@@ -28,6 +28,7 @@ from herringbone.analysis.twin.condensed.rungs import (
     Rungs,
     Shape,
     continued,
+    midway,
 )
 from herringbone.analysis.twin.condensed.step_matrices import HALVINGS, StepMatrices
 from herringbone.analysis.twin.condensed.system import Condensed
@@ -110,6 +111,7 @@ class Solution:
             close,
             lean,
             Sharp.of(np.array(LOBATTO[degree]), sharp),
+            midway(degree),
         )
         start = modes.start
         self.state = State(
