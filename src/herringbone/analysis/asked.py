@@ -167,19 +167,21 @@ def _handed_on(result: Result, coupling: str, place: str, gear: str) -> float:
     """1.0 if a coupling's torque, from its first flange to its second, goes to load from drive."""
     anatomy = result.info.anatomy
     first, *_ = (port.name for port in anatomy.ports(coupling, PortKind.FLANGE))
-    gears = (gear,) if gear else result.parts_with(Role.GEAR_PAIR)[:1]
-    joined = [end for name in gears for end in anatomy.joined(name, PortKind.FLANGE, place)]
-    from_gear = (coupling, first) in joined
+    from_gear = (coupling, first) in _at_flange(result, place, gear)
     return 1.0 if from_gear == (place == GEARS[1]) else -1.0
 
 
 def flange_torque(result: Result, place: str, gear: str = "") -> str | None:
     """Column of the torque that what is joined to a gear's flange gives to it; None without."""
+    columns = (f"{'.'.join(end)}.tau" for end in _at_flange(result, place, gear))
+    return next((column for column in columns if column in result.data), None)
+
+
+def _at_flange(result: Result, place: str, gear: str) -> list[tuple[str, str]]:
+    """Part and port's name of what is joined to a gear's flange; of the first pair without one."""
     anatomy = result.info.anatomy
     gears = (gear,) if gear else result.parts_with(Role.GEAR_PAIR)[:1]
-    joined = [end for name in gears for end in anatomy.joined(name, PortKind.FLANGE, place)]
-    columns = (f"{'.'.join(end)}.tau" for end in joined)
-    return next((column for column in columns if column in result.data), None)
+    return [end for name in gears for end in anatomy.joined(name, PortKind.FLANGE, place)]
 
 
 def mesh_forces(result: Result, gear: str = "") -> dict[str, str]:

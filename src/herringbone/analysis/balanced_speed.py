@@ -13,8 +13,7 @@ import numpy as np
 from herringbone.analysis.answered import NO_ANSWERS, Answered
 from herringbone.analysis.balanced_angle import NoBalanceError
 from herringbone.analysis.rigid_rotation import names_of_states
-from herringbone.analysis.steady_search import scales, steady_rotation
-from herringbone.analysis.swung_out import swung_out
+from herringbone.analysis.swung_out import even_rotation
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.wording import option
@@ -51,14 +50,9 @@ class _Speeds:
         """Of the fastest shaft [rad/s^2]; raises EquilibriumError."""
         if speed in self.tried:
             return self.tried[speed]
-        twin, answered = self._twin, self._answered
+        answered = self._answered
         x = self.state + (speed - self.state[self.fastest]) * answered.rotation
-        try:
-            found, _ = steady_rotation(twin.system, twin, answered.kept, x, answered)
-        except EquilibriumError:
-            if (near := swung_out(twin, answered, x, scales(twin))) is None:
-                raise
-            found, _ = steady_rotation(twin.system, twin, answered.kept, near, answered)
+        found = even_rotation(self._twin, answered, answered.kept, x)
         self.state = found[:-1]
         self.tried[speed] = float(found[-1])
         return self.tried[speed]

@@ -19,7 +19,7 @@ from herringbone.analysis.balanced_angle import NoBalanceError, balanced_angles
 from herringbone.analysis.balanced_speed import balanced_speed
 from herringbone.analysis.rigid_rotation import rigid_rotation, turning
 from herringbone.analysis.steady_search import scales, steady_rotation
-from herringbone.analysis.swung_out import swung_out
+from herringbone.analysis.swung_out import even_rotation, swung_out
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.declaring.roles import Quantity, Role
@@ -76,12 +76,7 @@ def answered_equilibrium(twin: Twin, answers: Answers) -> AnsweredEquilibrium:
         guess, held = _guess(twin), _held(twin.system, twin)
         answered = Answered(twin, answers, guess, speeds_up=held is None)
         stay = [state for state in (held, *answered.kept) if state is not None]
-        try:
-            found, _ = steady_rotation(twin.system, twin, stay, guess, answered)
-        except EquilibriumError:
-            if (near := swung_out(twin, answered, guess, scales(twin))) is None:
-                raise
-            found, _ = steady_rotation(twin.system, twin, stay, near, answered)
+        found = even_rotation(twin, answered, stay, guess)
         acceleration, x = answered.set(found), found[:-1]
         return AnsweredEquilibrium(_start_values(twin, x), x, acceleration, answered.rotation)
 
@@ -145,7 +140,7 @@ def _beginnings(
     yield from turning(twin, guess)
     if held is not None:
         answered = Answered(twin, NO_ANSWERS, guess, speeds_up=True)
-        near = swung_out(twin, answered, guess, scales(twin), held)
+        near = swung_out(twin, answered, guess, held)
         if near is not None:
             yield near
         return

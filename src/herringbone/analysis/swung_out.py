@@ -9,11 +9,33 @@ import numpy as np
 
 from herringbone.analysis.answered import Answered
 from herringbone.analysis.at_rest import Rest
+from herringbone.analysis.steady_search import scales, steady_rotation
 from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import EquilibriumError
+
+
+def even_rotation(twin: Twin, answered: Answered, stay: list[int], x: np.ndarray) -> np.ndarray:
+    """States and acceleration (n + 1,) of an even rotation: from a guess, or as motion comes there.
+
+    Args:
+        twin: of the components.
+        answered: the same, with what others answer.
+        stay: places of the states that keep their values.
+        x: guess (n,).
+
+    Raises:
+        EquilibriumError: none was found.
+    """
+    try:
+        return steady_rotation(twin.system, twin, stay, x, answered)[0]
+    except EquilibriumError:
+        if (near := swung_out(twin, answered, x)) is None:
+            raise
+        return steady_rotation(twin.system, twin, stay, near, answered)[0]
 
 
 def swung_out(
-    twin: Twin, answered: Answered, x: np.ndarray, scale: np.ndarray, angle: int | None = None
+    twin: Twin, answered: Answered, x: np.ndarray, angle: int | None = None
 ) -> np.ndarray | None:
     """States (n,) near an even rotation; None if nothing may speed up, or they do not get there.
 
@@ -21,7 +43,6 @@ def swung_out(
         twin: of the components.
         answered: the same, with what others answer.
         x: states (n,) to begin from; all shafts begin at the speed of the fastest one.
-        scale: sizes of the states (n,).
         angle: place of the one that stays; that of the fastest shaft if not given.
     """
     if not answered.kept:
@@ -47,7 +68,7 @@ def swung_out(
         return even + a * (by_acceleration - rotation) - turning_on
 
     moving = np.setdiff1d(np.arange(x.size), [angle, speed])
-    return Rest(rate, moving, scale).reached(begin)
+    return Rest(rate, moving, scales(twin)).reached(begin)
 
 
 def _turned_by(twin: Twin, x: np.ndarray, speed: int) -> list[int]:

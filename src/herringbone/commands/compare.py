@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from herringbone.commands import record
-from herringbone.commands.options import check_highest
+from herringbone.commands.options import check_highest, refuse_given
 from herringbone.commands.output import check_writable, show
-from herringbone.core import ParameterError
 from herringbone.core.places.files import write_whole
 
 if TYPE_CHECKING:
@@ -54,9 +53,9 @@ def run(options: argparse.Namespace) -> int:
     if options.output:
         check_writable(options.output)
     if options.second.is_file():
-        _refuse(options, ("columns", "highest"), "of two results folders; B is a record")
+        refuse_given(options, ("columns", "highest"), "of two results folders; B is a record")
         return record.run(options)
-    _refuse(options, record.OPTIONS, "of a measured record; B is a folder")
+    refuse_given(options, record.OPTIONS, "of a measured record; B is a folder")
     found = compare(options.first, options.second, *options.columns)
     text = json.dumps(as_json(found.summary()), indent=None if options.json else 1)
     if options.output:
@@ -67,13 +66,6 @@ def run(options: argparse.Namespace) -> int:
         found.plot(options.highest).savefig(files[2])
     show(text if options.json else "\n".join(lines(found)))
     return 0
-
-
-def _refuse(options: argparse.Namespace, names: Sequence[str], why: str) -> None:
-    """Raise ParameterError if any of some options is given."""
-    for name in names:
-        if getattr(options, name) not in (None, []):
-            raise ParameterError(f"--{name.replace('_', '-')}: {why}")
 
 
 def lines(found: "Comparison") -> Iterator[str]:

@@ -274,6 +274,13 @@ def assignments(items: Sequence[str], option: str, form: str) -> dict[str, str]:
     return found
 
 
+def refuse_given(options: argparse.Namespace, names: Sequence[str], why: str) -> None:
+    """Raise ParameterError if any of some options is given: why it does not go with the others."""
+    for name in names:
+        if getattr(options, name) not in (None, []):
+            raise ParameterError(f"--{name.replace('_', '-')}: {why}")
+
+
 def check_highest(highest: float | None) -> None:
     """Raise ParameterError for an end of spectra [Hz] that is none."""
     if highest is not None and not highest > 0.0:

@@ -1,7 +1,6 @@
 """What a scene asks of a housing that is reduced: its band, and what the reduction changes."""
 
 import argparse
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from herringbone.commands.output import say
 from herringbone.core import ParameterError
+from herringbone.core.places.temporary import temporary_folder
 from herringbone.core.reduction import BAND
 from herringbone.housing import ModalHousing, write_housing
 
@@ -77,6 +77,6 @@ def changes(asked: "Asked", reduced: ModalHousing) -> dict[str, dict]:
 @contextmanager
 def _as_folder(housing: ModalHousing) -> Iterator[Path]:
     """The data as systems take them, wherever they have come from."""
-    with tempfile.TemporaryDirectory(prefix="herringbone-") as folder:
-        write_housing(housing, Path(folder))
-        yield Path(folder)
+    with temporary_folder() as folder:
+        write_housing(housing, folder)
+        yield folder

@@ -9,9 +9,10 @@ import numpy as np
 from tqdm import tqdm
 
 from herringbone.commands.housing.asked import asked_by, band_for, changes
+from herringbone.commands.options import refuse_given
 from herringbone.commands.output import check_writable, say, show
 from herringbone.components.registry import component_for
-from herringbone.core import HerringboneError, ParameterError
+from herringbone.core import HerringboneError
 from herringbone.core.declaring.roles import Role
 from herringbone.housing import ModalHousing, read_housing, write_housing
 from herringbone.housing.files.file_format import DATA
@@ -110,20 +111,15 @@ def _draw(
         raise HerringboneError(f"cannot write {file}: {error.strerror}") from error
 
 
-def _refuse_of_matrices(options: argparse.Namespace) -> None:
-    for name in ("band", "tolerance"):
-        if getattr(options, name) is not None:
-            raise ParameterError(
-                f"--{name}: of matrices, which are reduced; modes, as those of {options.file[0]}, "
-                "are taken as they are, good to valid_to_hz of the seat file"
-            )
-
-
 def import_command(options: argparse.Namespace) -> int:
     """Import a housing of another program, write it in the neutral format."""
     output = options.output or Path("results") / options.file[0].stem
     if not is_matrix(options.file[0]):
-        _refuse_of_matrices(options)
+        why = (
+            f"of matrices, which are reduced; modes, as those of {options.file[0]}, are taken as "
+            "they are, good to valid_to_hz of the seat file"
+        )
+        refuse_given(options, ("band", "tolerance"), why)
     check_writable(_folder(output))
     with tqdm(disable=None, bar_format="[{elapsed}] {desc}") as bar:
         housing = import_housing(

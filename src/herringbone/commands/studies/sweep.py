@@ -16,6 +16,7 @@ from herringbone.commands.options import (
     add_start_values,
     assignments,
     files_of_parts,
+    refuse_given,
     replacements,
     spread_of,
     start_values,
@@ -196,9 +197,8 @@ def _evaluator(options: argparse.Namespace, wishes: "Wishes") -> "Evaluator | No
 
 def _refuse_of_states(options: argparse.Namespace) -> None:
     """Refuse what is of steady states alone; raises ParameterError."""
-    for name in ("sensitivities", "solver"):
-        if getattr(options, name) is not None:
-            raise ParameterError(f"--{name}: of steady states whose equations are all known")
+    why = "of steady states whose equations are all known"
+    refuse_given(options, ("sensitivities", "solver"), why)
 
 
 def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:

@@ -34,7 +34,9 @@ def prepared_at(
         structure = prepared(system, scene, asked).system
     wanted = {**SetPoints(structure).values(point), **wishes.values}
     asked = replace(asked, values=wanted, start=Start.EQUILIBRIUM)
-    signals = _signals(with_known_values(structure, load_scene(folder, scene), asked), point)
+    signals: dict[str, float | str] = {}
+    if point.speed is not None or point.torque is not None:
+        signals = _signals(with_known_values(structure, load_scene(folder, scene), asked), point)
     if not signals:
         return prepared(system, scene, asked)
     try:

@@ -101,7 +101,6 @@ class Solution:
         if not coarse:
             sharp = np.concatenate([sharp, system.fine])
         self._shape = Shape(degree, lean, system.directions, sharp, system.stiff, lean and coarse)
-        self._double = np.array([not self._shape.short])
         turned = np.broadcast_to(modes.of_angles @ modes.angles, (degree, calls.argument[-1]))
         self._fixed = Fixed(
             _filled(np.append(self._shape.rows(turned), np.zeros(2 * modes.angles.size))),
@@ -136,14 +135,15 @@ class Solution:
 
     def saved(self) -> dict[str, np.ndarray]:
         """What is needed to go on with the same bits; copies."""
-        return {name: array.copy() for name, array in self._remembered().items()}
+        copies = {name: array.copy() for name, array in self._remembered().items()}
+        return {**copies, "short": np.array([self._shape.short])}
 
     def put(self, saved: Mapping[str, np.ndarray]) -> None:
         """Go on from there."""
         for name, array in self._remembered().items():
             array[...] = saved[name]
-        if self._double[0] == self._shape.short:
-            self._make_matrices()
+        if self._shape.short != (short := bool(saved["short"][0])):
+            self._make_matrices(short=short)
         self.matrices.renew()
 
     def _remembered(self) -> dict[str, np.ndarray]:
@@ -151,7 +151,7 @@ class Solution:
         table = {"scale": self._table.scale, "least": self._table.least}
         return {
             **self.state._asdict(), **table, "indicators": nodes.e[0], "arguments": nodes.start,
-            "reference": self._reference, "double": self._double,
+            "reference": self._reference,
         }  # fmt: skip
 
     def enter(self, t0: float, t1: float) -> None:
@@ -208,8 +208,7 @@ class Solution:
             while status == RUNG_WANTED:
                 rung = int(self.state.place[RUNG])
                 if self._shape.short and (rung > 0 or h < _SHORT):
-                    self._double[0] = True
-                    self._make_matrices()
+                    self._make_matrices(short=False)
                     asked = asked._replace(rungs=self.matrices.of(h))
                 self.matrices.make(asked.rungs, rung)
                 status = march(self.arrays, asked)
@@ -217,13 +216,13 @@ class Solution:
                 self._fail(status, t0, asked.rungs)
         return Samples(*(array[:count] for array in samples))
 
-    def _make_matrices(self) -> None:
+    def _make_matrices(self, *, short: bool) -> None:
         """In double precision once a step is halved, as where a law bends, and of short steps.
 
         Values far from those at the start of the piece, as of teeth apart, have to cancel what mean
         tangents stand for: single precision would err as a force does.
         """
-        self._shape = self._shape._replace(short=not self._double[0])
+        self._shape = self._shape._replace(short=short)
         self.matrices = StepMatrices(self._system, self._shape, self._reference)
 
     def _begin(self, t: float) -> None:
