@@ -57,7 +57,7 @@ class Signals(NamedTuple):
 _KINDS: dict[type, str] = {
     Sharp: "f1 i1 i1 f1 f2",
     Calls: "f1 i1 i1 i1 i1 i1 i1 i1 i1 i1 i1",
-    Fixed: "f1 f3 f1 real real flag Sharp",
+    Fixed: "f1 f3 f1 real real flag Sharp f2",
     Table: "i1 i1 f1 i1 f1 i1 f1 f1",
     Nodes: "f2 f2 f2 f2 f1",
     Room: "f2 f1 f1 f1 f1",
