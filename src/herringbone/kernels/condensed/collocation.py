@@ -179,8 +179,7 @@ def spread(sharp: Sharp, nodes: Nodes, rows: np.ndarray) -> None:
 def turned(nodes: Nodes, between: np.ndarray) -> bool:
     """True if an indicator changes its sign in the step.
 
-    Also twice between two nodes, as of a contact that is over at the next one: by the vertex of the
-    parabola through both and the place midway.
+    Also twice between two nodes, see `hidden`.
 
     Args:
         nodes: of the step.
@@ -191,26 +190,38 @@ def turned(nodes: Nodes, between: np.ndarray) -> bool:
             if nodes.e[i, j] * nodes.e[i + 1, j] < 0.0:
                 return True
     for j in range(len(nodes.e[0])):
-        least = most = abs(nodes.e[0, j])
-        for i in range(len(nodes.z)):
-            size = abs(nodes.e[i + 1, j])
-            least, most = min(least, size), max(most, size)
-        if least < most - least and _hidden(nodes.e[:, j], between):
+        if hidden(nodes.e, j, between) >= 0:
             return True
     return False
 
 
 @inlined
-def _hidden(e: np.ndarray, between: np.ndarray) -> bool:
-    """True if values (nodes,) of one sign have another one between two nodes."""
+def hidden(e: np.ndarray, j: int, between: np.ndarray) -> int:
+    """Node after which an indicator of one sign at all nodes has another one, then not; -1: none.
+
+    So does a contact that is over at the next node. It shows in the vertex of the parabola through
+    both nodes and the place midway.
+
+    Args:
+        e: (nodes, indicators).
+        j: which indicator.
+        between: see `turned`.
+    """
+    least = most = abs(e[0, j])
+    for i in range(len(between)):
+        size = abs(e[i + 1, j])
+        least, most = min(least, size), max(most, size)
+    if least >= most - least:
+        return -1
     for i in range(len(between)):
         middle = 0.0
-        for k in range(e.size):
-            middle += between[i, k] * e[k]
-        bend, slope = 0.5 * (e[i] - 2.0 * middle + e[i + 1]), 0.5 * (e[i + 1] - e[i])
+        for k in range(len(e)):
+            middle += between[i, k] * e[k, j]
+        start, end = e[i, j], e[i + 1, j]
+        bend, slope = 0.5 * (start - 2.0 * middle + end), 0.5 * (end - start)
         vertex = middle
         if abs(slope) < 2.0 * abs(bend):
             vertex -= 0.25 * slope * slope / bend
-        if vertex * e[i] < 0.0:
-            return True
-    return False
+        if vertex * start < 0.0:
+            return i
+    return -1

@@ -7,7 +7,7 @@ import numpy as np
 
 from herringbone.analysis.twin.composite_parts import Parts
 from herringbone.analysis.twin.condensed.equations import laws_of
-from herringbone.analysis.twin.condensed.rungs import LOBATTO, coefficients
+from herringbone.analysis.twin.condensed.rungs import LOBATTO, coefficients, midway
 from herringbone.core import Declaration, Instance, Laws, StructureError
 from herringbone.kernels.condensed.in_block.form import Equations, Form, Shown
 from herringbone.kernels.signals import STRIDE
@@ -81,6 +81,7 @@ def core_form(
         signals=len(signals_of(parts)),
         inputs=inputs,
         nodes=nodes,
+        between=midway(DEGREE),
         fit=coefficients(DEGREE),
         ahead=parabola_since_end(nodes),
         lengths=tuple(lengths),

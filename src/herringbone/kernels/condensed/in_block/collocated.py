@@ -7,7 +7,7 @@ import numpy as np
 from herringbone.kernels.compiling.jit import inner, outside
 from herringbone.kernels.compiling.views import integers, matrix
 from herringbone.kernels.condensed.channels import inputs
-from herringbone.kernels.condensed.collocation import residuals, spread
+from herringbone.kernels.condensed.collocation import hidden, residuals, spread
 from herringbone.kernels.condensed.correction import correct
 from herringbone.kernels.condensed.in_block.arrays import array_kernels, sharp_directions
 from herringbone.kernels.condensed.in_block.form import Equations, Form
@@ -71,18 +71,26 @@ def doubts(form: Form, at: WorkPlaces, owner: str) -> tuple[Callable, Callable]:
     degree, count, kinks, values = form.degree, form.degree + 1, form.kinks, form.values
     stiff, signals, nodes = np.array(form.stiff), form.signals, form.nodes
     top, unknowns = form.fit[-1], len(form.stiff)
-    top_size = np.abs(top).sum()
+    top_size, between = np.abs(top).sum(), form.between
 
     @outside(owner)
     def bends(w: np.ndarray, changes: int) -> float:
         """Share of the step in which no indicator has changed its sign; 1: none does.
 
-        So many changes are looked at: the indicators' number for each node after the start.
+        So many changes are looked at: the indicators' number for each node after the start; of all
+        of them also changes between two nodes, see `hidden`.
         """
         for k in range(changes):
             if w[at.e + k] * w[at.e + kinks + k] < 0.0:
                 return float(nodes[k // kinks])
-        return 1.0
+        straight = 1.0
+        if changes == degree * kinks:
+            e = matrix(w, at.e, count, kinks)
+            for j in range(kinks):
+                after = hidden(e, j, between)
+                if after >= 0:
+                    straight = min(straight, float(nodes[after]))
+        return straight
 
     @inner(owner)
     def highest(w: np.ndarray, channel: int, scale: float) -> float:

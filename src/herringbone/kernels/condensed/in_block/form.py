@@ -46,6 +46,7 @@ class Form:
             they are linear over a step.
         signals, inputs: how many; signals are known over time, inputs are the host's.
         nodes: (degree + 1,) of a step, from 0 to 1.
+        between: (degree, degree + 1), see `collocation.turned`.
         fit: (degree + 1, degree + 1): powers of the polynomial through values at the nodes.
         ahead: (2, degree + 1): first and second power, since the end of a step, of the parabola
             through its end that fits its other values best.
@@ -68,6 +69,7 @@ class Form:
     signals: int
     inputs: int
     nodes: np.ndarray
+    between: np.ndarray
     fit: np.ndarray
     ahead: np.ndarray
     lengths: tuple[float, ...]
