@@ -26,7 +26,7 @@ steps, *parts = sys.argv[1:]
 for name, file in zip(parts[::2], parts[1::2]):
     for text in ("1e-6", *steps.split()):
         with open_host(name, Path(file)) as part:
-            part.initialise()
+            part.initialise(stop_time=1e308)
             begin = process_time()
             try:
                 part.step(0.0, float(text))

@@ -340,3 +340,21 @@ def test_documented_step_limit(order, inertia, beyond, exported, tmp_path):
 @pytest.mark.parametrize("number", [0, 1])
 def test_reference_results_are_those_of_turning_shafts(exported, number):
     assert replay(exported(number)) == []
+
+
+@pytest.mark.parametrize("unknown", ["bearing.pinion_left.f_y", "mesh_left.force", "wheel.a"])
+def test_derivatives_in_initialisation_are_those_of_the_balanced_start(unknown, exported, tmp_path):
+    """The start follows the torque: at fixed states forces would not depend on it at all."""
+    host = Fmi2Host(exported(0), tmp_path)
+    host.slave.reset()
+    host.slave.setupExperiment(startTime=0.0)
+    host.slave.enterInitializationMode()
+    (torque,) = host.get("pinion.tau")
+    at, of = host.reference["pinion.tau"], host.reference[unknown]
+    (slope,) = host.slave.getDirectionalDerivative([of], [at], [1.0])
+    there = []
+    for given in (torque - 0.2, torque + 0.2):
+        host.set({"pinion.tau": given})
+        there.append(host.get(unknown)[0])
+    assert slope == pytest.approx((there[1] - there[0]) / 0.4, rel=1e-5)
+    assert slope > 1.0

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
-from herringbone.analysis.twin.condensed.equations import laws_of
+from herringbone.analysis.twin.condensed.equations import laws_of, settle_laws
 from herringbone.analysis.twin.condensed.laws import laws_along
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import StructureError
@@ -30,15 +30,7 @@ class SystemLaws:
     def __init__(self, system: Condensed, late: float, ideal: bool = False) -> None:
         self._made_of = system, late, ideal
         self._calls, self._late = system.calls(), late
-        twin = system.twin
-        first = twin.layout.block_first
-        for p in system.equations.laws:
-            laws = laws_of(twin.instances[p])
-            assert laws is not None
-            block = self._calls.blocks[first[p] : first[p + 1]]
-            laws.settle(block)
-            if ideal:
-                laws.ramp(block, math.inf)
+        settle_laws(system.twin, self._calls.blocks, math.inf if ideal else 0.0)
         self._room: dict[int, Samples] = {}
 
     def __reduce__(self) -> tuple[type["SystemLaws"], tuple[Condensed, float, bool]]:

@@ -126,7 +126,7 @@ class Structure:
         if key not in self._kept:
             if len(self._kept) >= _MOST:
                 self._kept.clear()
-            self._kept[key] = Wanted(self.core.condensed, self.core.affine, columns)
+            self._kept[key] = Wanted(self.core.condensed, self.core.affine, columns, settled=True)
         return self._kept[key]
 
     @cached_property

@@ -178,12 +178,27 @@ class Twin:
                 return self.layout.block_first[p] + declaration.index[variable]
         raise StructureError(f"the twin has no part '{name}'")
 
-    def observe(self, times: np.ndarray, states: np.ndarray, columns: Sequence[str]) -> np.ndarray:
-        """Values (times, columns) of outputs at times and states (n, times)."""
+    def observe(
+        self,
+        times: np.ndarray,
+        states: np.ndarray,
+        columns: Sequence[str],
+        block: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Values (times, columns) of outputs at times and states (n, times).
+
+        The block, of all parts, is the twin's own if none is given.
+        """
         values = np.empty((times.size, len(columns)))
         indices = np.array([self.index(c) for c in columns], dtype=np.int64)
         equations = self._equations(times.size)
-        equations.observe(self.block, times, np.ascontiguousarray(states), indices, values)
+        equations.observe(
+            self.block if block is None else block,
+            times,
+            np.ascontiguousarray(states),
+            indices,
+            values,
+        )
         return values
 
     def breakpoints(self, t_end: float) -> list[float]:

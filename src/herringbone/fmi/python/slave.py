@@ -24,6 +24,9 @@ from herringbone.fmi.python import state
 from herringbone.fmi.python.guarded_slave import GuardedSlave
 from herringbone.fmi.python.state import FmuState
 
+_SLACK = 1e-9
+"""Relative difference of times that are one: of sums of a million steps."""
+
 
 class _Phase(IntEnum):
     INSTANTIATED = 0
@@ -59,6 +62,8 @@ class ComponentSlave(GuardedSlave):
         self._tables = ""
         self._phase = _Phase.INSTANTIATED
         self._outdated = True
+        self._stop = math.inf
+        self._moved = slice(declaration.mutable_size)
         self._kernel = self._component.kernels.step
         self._read: tuple[list[int], Callable] = ([-1], tuple)
         self._written: list[int] = []
@@ -83,9 +88,10 @@ class ComponentSlave(GuardedSlave):
     def setup_experiment(
         self, start_time: float, stop_time: float | None, tolerance: float | None
     ) -> None:
-        """Take the start time [s]."""
-        del stop_time, tolerance
+        """Take start and stop time [s]."""
+        del tolerance
         self._time = start_time
+        self._stop = math.inf if stop_time is None else stop_time
 
     def enter_initialization_mode(self) -> None:
         """From now on, until `exit_initialization_mode`, outputs follow inputs and parameters."""
@@ -123,25 +129,41 @@ class ComponentSlave(GuardedSlave):
         self._component.kernels.out(self._instance.block, self._time)
 
     def advance(self, time: float, step_size: float) -> bool:
-        """Step from `time` to `time + step_size` [s]; False discards the step."""
+        """Step from `time` to `time + step_size` [s]; False discards the step.
+
+        One that cannot be computed leaves everything as it was.
+        """
         self._time = time
         if self._failure:
             return False
-        instance = self._instance
+        instance, end = self._instance, time + step_size
         stepping = self._phase is _Phase.STEPPING and 0.0 <= step_size < math.inf
-        if stepping and self._kernel(instance.block, instance.work, time, step_size) == 0:
-            self._time = time + step_size
+        if not stepping or end > self._stop + _SLACK * (1.0 + abs(self._stop)):
+            self._attempt(self._refuse_step, step_size)
+            return False
+        before = instance.block[self._moved].copy()
+        if self._kernel(instance.block, instance.work, time, step_size) == 0:
+            self._time = end
             return True
-        self._attempt(self._explain, time, step_size)
+        self._attempt(self._explain, step_size)
+        instance.block[self._moved] = before
+        self._failure = ""
         return False
 
-    def _explain(self, time: float, step_size: float) -> None:
-        """Say why a step failed."""
+    def _refuse_step(self, step_size: float) -> None:
         if self._phase is not _Phase.STEPPING:
             self._fail(f"{self.instance_name}: doStep before the end of initialisation")
         elif not 0.0 <= step_size < math.inf:
             self._fail(f"{self.instance_name}: step size {step_size} s; it must be 0 or positive")
-        elif step_size > (longest := self._instance.longest_step()):
+        else:
+            self._fail(
+                f"{self.instance_name}: a step from {self._time:g} s by {step_size:g} s ends after "
+                f"the stop time of {self._stop:g} s"
+            )
+
+    def _explain(self, step_size: float) -> None:
+        """Say why a step failed."""
+        if step_size > (longest := self._instance.longest_step()):
             self._fail(
                 f"{self.instance_name}: step size {step_size:g} s; one call takes at most "
                 f"{longest:g} s"

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from herringbone.analysis.twin.condensed.equations import laws_of
+from herringbone.analysis.twin.condensed.equations import settle_laws
 from herringbone.analysis.twin.condensed.march_arrays import Calls
 from herringbone.analysis.twin.condensed.system import Condensed
 
@@ -34,12 +34,5 @@ class Held(Condensed):
     def calls(self) -> Calls:
         """Addresses, and fresh blocks."""
         found = super().calls()
-        first = self.twin.layout.block_first
-        for p in self.equations.laws:
-            laws = laws_of(self.twin.instances[p])
-            assert laws is not None
-            block = found.blocks[first[p] : first[p + 1]]
-            laws.settle(block)
-            if self.ramp:
-                laws.ramp(block, self.ramp)
+        settle_laws(self.twin, found.blocks, self.ramp)
         return found

@@ -71,6 +71,23 @@ def laws_of(instance: Instance) -> Laws | None:
     return laws
 
 
+def settle_laws(twin: Twin, blocks: np.ndarray, ramp: float = 0.0) -> None:
+    """End, in the blocks of all parts, one behind the other, what comes in over a time or an angle.
+
+    Args:
+        twin: whose blocks they are, or copies.
+        blocks: as `twin.block`.
+        ramp: turns over which what comes in over an angle does so after that; infinite: never.
+    """
+    first = twin.layout.block_first
+    for p, instance in enumerate(twin.instances):
+        if laws := laws_of(instance):
+            block = blocks[first[p] : first[p + 1]]
+            laws.settle(block)
+            if ramp:
+                laws.ramp(block, ramp)
+
+
 class _Given:
     """Derivatives and arguments of a twin whose laws' values and sources' signals are given."""
 

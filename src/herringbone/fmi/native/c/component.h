@@ -95,6 +95,8 @@ typedef struct {
     /* Of a step that failed, tells if an input is the cause: it jumps, or jumps that change sign and
        grow show an unstable loop. False if the inputs are steady. */
     bool (*blame)(struct Instance *instance, double step_size);
+    /* After a step that failed: it has not been. */
+    void (*take_back)(struct Instance *instance);
 } HbWatch;
 extern const HbWatch hb_watch;
 

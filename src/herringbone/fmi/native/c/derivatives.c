@@ -112,10 +112,26 @@ static void exchange(double *a, double *b, size_t count) {
 /* What follows from the coordinates need not be kept: `stale` stands before them. */
 void instance_keep_outputs(Instance *instance) {
     uint32_t first = hb_component.first_output;
+    double *oldest = instance->older;
+    instance->older = instance->previous;
+    instance->previous = oldest;
     if (hb_component.answer && instance->block[hb_component.stale] != 0.0)
         first = hb_component.stale;
     memcpy(instance->previous + first - hb_component.first_output, instance->block + first,
            (hb_component.mutable_size - first) * sizeof *instance->previous);
+}
+
+void instance_restore_outputs(Instance *instance) {
+    uint32_t first = hb_component.first_output, stale = hb_component.stale;
+    double *last = instance->previous;
+    bool partly = hb_component.answer && last[stale - first] != 0.0;
+    uint32_t from = partly ? stale : first;
+    memcpy(instance->block + from, last + from - first,
+           (hb_component.mutable_size - from) * sizeof *last);
+    if (partly)
+        instance->block[stale] = 2.0; /* made before, they are not kept */
+    instance->previous = instance->older;
+    instance->older = last;
 }
 
 /* Outputs at the start of the last step, if they were not made then: as if it had not been taken. */

@@ -12,8 +12,17 @@ struct FmuState {
     double saved[];
 };
 
-static size_t saved_length(const Instance *instance) {
+static size_t previous_length(void) {
+    return hb_component.mutable_size - hb_component.first_output;
+}
+
+/* Of slopes and the block up to its tables. */
+static size_t present_length(const Instance *instance) {
     return (size_t)(instance->block - instance->slopes) + hb_component.first_table;
+}
+
+static size_t saved_length(const Instance *instance) {
+    return previous_length() + present_length(instance);
 }
 
 static size_t saved_size(const Instance *instance) {
@@ -59,7 +68,9 @@ Status instance_get_state(Instance *instance, void **handle) {
         state->texts = texts_share(instance->texts);
     }
     state->moment = instance->now;
-    memcpy(state->saved, instance->slopes, saved_size(instance));
+    memcpy(state->saved, instance->previous, previous_length() * sizeof(double));
+    memcpy(state->saved + previous_length(), instance->slopes,
+           present_length(instance) * sizeof(double));
     *handle = state;
     return STATUS_OK;
 }
@@ -110,7 +121,9 @@ Status instance_set_state(Instance *instance, void *handle) {
     if (memcmp(state->saved + length - parameters, instance->block + hb_component.mutable_size,
                parameters * sizeof(double)) != 0)
         memset(instance->work, 0, hb_component.work * sizeof *instance->work);
-    memcpy(instance->slopes, state->saved, saved_size(instance));
+    memcpy(instance->previous, state->saved, previous_length() * sizeof(double));
+    memcpy(instance->slopes, state->saved + previous_length(),
+           present_length(instance) * sizeof(double));
     if (hb_component.answer && instance->block[hb_component.stale] != 0.0)
         instance->block[hb_component.stale] = 2.0; /* what was asked for is another instance's */
     instance->now = state->moment;

@@ -14,6 +14,15 @@ Status instance_set_time(Instance *instance, double time, const char *what) {
     return STATUS_OK;
 }
 
+Status instance_set_stop(Instance *instance, bool defined, double stop) {
+    if (defined && !(stop >= instance->now.time))
+        return instance_fail(instance, STATUS_ERROR,
+                             "%s: stop time %g s; it must not lie before the start time",
+                             instance->name, message_number(stop));
+    instance->now.stop = defined ? stop : INFINITY;
+    return STATUS_OK;
+}
+
 Status instance_set_tolerance(Instance *instance, bool defined, double tolerance) {
     uint32_t at = hb_component.tolerance;
     if (defined && !(tolerance > 0.0 && tolerance < INFINITY))
@@ -224,6 +233,17 @@ Status instance_refresh(Instance *instance) {
     return STATUS_OK;
 }
 
+/* Inputs at the end of the last step in place of those at its start, and back. */
+static void exchange_ends(Instance *instance) {
+    uint32_t node = instance->now.end_node;
+    double *signal = instance->block + hb_component.first_input;
+    for (uint32_t k = 0; node && k < hb_component.inputs; k++, signal += HB_STRIDE) {
+        double value = signal[0];
+        signal[0] = signal[node];
+        signal[node] = value;
+    }
+}
+
 Status instance_refresh_rates(Instance *instance) {
     if (instance->outdated) {
         Status status = instance_refresh(instance);
@@ -231,7 +251,9 @@ Status instance_refresh_rates(Instance *instance) {
             return status;
     }
     instance_complete(instance);
+    exchange_ends(instance);
     hb_component.rhs(instance->block, instance->now.time, instance->rates);
+    exchange_ends(instance);
     instance->rates_outdated = false;
     return STATUS_OK;
 }

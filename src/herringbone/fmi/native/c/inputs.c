@@ -135,4 +135,8 @@ static bool blame_input(Instance *instance, double step_size) {
     return true;
 }
 
-const HbWatch hb_watch = {note_inputs, note_ahead, blame_input};
+static void take_back(Instance *instance) {
+    instance->steps--;
+}
+
+const HbWatch hb_watch = {note_inputs, note_ahead, blame_input, take_back};

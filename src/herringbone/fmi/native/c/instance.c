@@ -1,5 +1,6 @@
 #include "instance.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,19 +42,21 @@ static size_t previous_length(void) {
 }
 
 static bool allocate(Instance *instance) {
-    size_t saved = slopes_length() + previous_length();
-    size_t length = saved + hb_component.size + hb_component.work + hb_component.states +
-                    hb_component.indicators_count + (JUMPS + 1) * hb_component.inputs + 1;
+    size_t length = 2 * (slopes_length() + previous_length()) + hb_component.size +
+                    hb_component.work + hb_component.states + hb_component.indicators_count +
+                    (JUMPS + 1) * hb_component.inputs + hb_component.first_output + 1;
     instance->slopes = calloc(length, sizeof(double));
     if (!instance->slopes)
         return false;
-    instance->previous = instance->slopes + slopes_length();
-    instance->block = instance->previous + previous_length();
+    instance->block = instance->slopes + slopes_length();
     instance->work = instance->block + hb_component.size;
     instance->rates = instance->work + hb_component.work;
     instance->indicators = instance->rates + hb_component.states;
     instance->ahead = instance->indicators + hb_component.indicators_count;
     instance->jumps = instance->ahead + hb_component.inputs;
+    instance->previous = instance->jumps + JUMPS * hb_component.inputs;
+    instance->older = instance->previous + previous_length();
+    instance->before = instance->older + previous_length();
     return true;
 }
 
@@ -64,12 +67,12 @@ static bool start(Instance *instance) {
         return false;
     texts_release(instance->texts);
     instance->texts = texts;
-    size_t saved = slopes_length() + previous_length();
+    memset(instance->previous, 0, previous_length() * sizeof *instance->previous);
     memset(instance->slopes, 0,
-           (saved + hb_component.size + hb_component.work) * sizeof *instance->slopes);
+           (slopes_length() + hb_component.size + hb_component.work) * sizeof *instance->slopes);
     for (uint32_t i = 0; i < hb_component.first_table; i++)
         instance->block[i] = hb_component.reals[i].start;
-    instance->now = (Moment){.phase = PHASE_INSTANTIATED};
+    instance->now = (Moment){.phase = PHASE_INSTANTIATED, .stop = INFINITY};
     instance->outdated = false;
     instance->rates_outdated = true;
     instance->not_settled = 0;

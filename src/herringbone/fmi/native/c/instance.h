@@ -34,6 +34,8 @@ typedef struct {
     uint32_t last_degree; /* degree of the signals in the last step */
     uint32_t input_order; /* highest order of the input derivatives for the next step; 0: none */
     uint32_t derivatives; /* bit k: the host gave a derivative of input k for the next step */
+    uint32_t end_node;    /* node that has the inputs of now, until the host sets some; 0: values */
+    double stop;          /* no step goes beyond [s] */
 } Moment;
 
 /* So many changes of each input are kept for messages. */
@@ -58,10 +60,12 @@ struct Instance {
     Texts *texts;
     FmuState *states; /* those that the host has not freed */
 
-    /* One allocation. The saved part is slopes, previous, and the block up to its tables. */
-    double *slopes;   /* input derivatives for the next step: [inputs][HIGHEST_ORDER] */
-    double *previous; /* outputs and locals at the start of the last step */
+    /* One allocation. The saved part is previous, slopes, and the block up to its tables. */
+    double *slopes; /* input derivatives for the next step: [inputs][HIGHEST_ORDER] */
     double *block, *work;
+    double *previous; /* outputs and locals at the start of the last step */
+    double *older;    /* the same of the step before; what a step that fails goes back to, ... */
+    double *before;   /* ... as to slopes, states and inputs */
     double *rates;      /* derivatives of the states */
     double *indicators; /* work space for event indicators */
 
@@ -93,6 +97,8 @@ Status instance_refuse(Instance *instance, const char *call);
 
 /* initialisation.c */
 Status instance_set_time(Instance *instance, double time, const char *what);
+/* A stop time that the host gives; without one steps go on for ever. */
+Status instance_set_stop(Instance *instance, bool defined, double stop);
 /* The tolerance that the host gives; if it gives none, that of the default experiment holds. */
 Status instance_set_tolerance(Instance *instance, bool defined, double tolerance);
 Status instance_enter_initialisation(Instance *instance);
@@ -150,6 +156,7 @@ uint32_t reference_of_time(void);
 uint32_t last_reference(void); /* of the event indicators, if there are any */
 
 /* step.c */
+/* A step that fails leaves everything as it was before. */
 Status instance_step(Instance *instance, double time, double step_size);
 
 /* derivatives.c: input and output derivatives, an alternative to nodes.
@@ -158,7 +165,8 @@ Status instance_step(Instance *instance, double time, double step_size);
    interface_degree = 0. An output derivative holds at the end of the last step: another output
    where that is the derivative; otherwise the slope of the polynomial through the values of the
    step, which is 0 before the first step. */
-void instance_keep_outputs(Instance *instance); /* at the start of a step */
+void instance_keep_outputs(Instance *instance);    /* at the start of a step */
+void instance_restore_outputs(Instance *instance); /* of a step that failed */
 Status instance_set_input_derivatives(Instance *instance, const uint32_t references[],
                                       size_t count, const int32_t orders[],
                                       const double values[]);

@@ -3,6 +3,9 @@
 
 #include "instance.h"
 
+/* Relative difference of times that are one: of sums of a million steps. */
+static const double SLACK = 1e-9;
+
 static bool in_vector(uint32_t index) {
     return hb_component.access[index] == HB_HIDDEN || hb_component.access[index] == HB_ELEMENT;
 }
@@ -108,23 +111,54 @@ static Status refuse_two_signals(Instance *instance) {
                          instance->name, instance->block[hb_component.degree]);
 }
 
+static void keep(Instance *instance) {
+    size_t slopes = (size_t)(instance->block - instance->slopes);
+    memcpy(instance->before, instance->block, hb_component.first_output * sizeof(double));
+    if (instance->now.input_order)
+        memcpy(instance->before + hb_component.first_output, instance->slopes,
+               slopes * sizeof(double));
+    instance_keep_outputs(instance);
+}
+
+/* As before the step, whose start is the last time that was reached. */
+static void go_back(Instance *instance, const Moment *then) {
+    size_t slopes = (size_t)(instance->block - instance->slopes);
+    instance->now = *then;
+    memcpy(instance->block, instance->before, hb_component.first_output * sizeof(double));
+    if (then->input_order)
+        memcpy(instance->slopes, instance->before + hb_component.first_output,
+               slopes * sizeof(double));
+    instance_restore_outputs(instance);
+    if (hb_component.watch)
+        hb_component.watch->take_back(instance);
+}
+
 Status instance_step(Instance *instance, double time, double step_size) {
     Moment *now = &instance->now;
     if (now->phase != PHASE_STEP || !isfinite(time) || !(step_size >= 0.0 && step_size < INFINITY))
         return refuse_step(instance, time, step_size);
+    if (time + step_size > now->stop + SLACK * (1.0 + fabs(now->stop)))
+        return instance_fail(instance, STATUS_ERROR,
+                             "%s: a step from %g s by %g s ends after the stop time of %g s",
+                             instance->name, time, step_size, now->stop);
     now->time = time;
     if (now->input_order && instance->block[hb_component.degree] != 0.0)
         return refuse_two_signals(instance);
-    instance_keep_outputs(instance);
+    Moment then = *now;
+    keep(instance);
     now->last_step = step_size;
     now->last_degree = (uint32_t)instance->block[hb_component.degree];
     if (hb_component.watch)
         hb_component.watch->before_step(instance);
     int32_t failed = step_along_inputs(instance, time, step_size);
     instance->rates_outdated = true;
-    if (failed)
-        return explain_failure(instance, failed, step_size);
+    if (failed) {
+        Status status = explain_failure(instance, failed, step_size);
+        go_back(instance, &then);
+        return status;
+    }
     now->time = time + step_size;
+    now->end_node = now->last_degree;
     if (hb_component.watch)
         hb_component.watch->after_step(instance);
     instance_tell_remarks(instance);

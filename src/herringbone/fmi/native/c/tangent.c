@@ -1,4 +1,7 @@
-/* Directional derivatives: outputs and derivatives of states, by inputs and states. */
+/* Directional derivatives: outputs and derivatives of states, by inputs and states.
+
+   In initialisation mode also by parameters, and through what makes the start: by differences then. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,6 +65,69 @@ static void compute(Instance *instance) {
     memcpy(outputs, kept, size);
 }
 
+/* Step of a central difference over the size of what is moved: eps^(1/3) makes the error of the
+   difference and that of rounding alike (Dennis and Schnabel, Numerical Methods for Unconstrained
+   Optimization, 1996, section 5.6); a start is found to some 1e-10, so that it is longer here. */
+static const double MOVED = 1e-4;
+
+static bool is_moved(uint32_t reference) {
+    uint8_t access = hb_component.access[reference];
+    bool parameter = access == HB_FIXED || access == HB_TUNABLE;
+    return is_known(reference) ||
+           (instance_is_real(reference) && parameter && !hb_component.reals[reference].whole);
+}
+
+/* Values of the unknowns where a known has another value. */
+static Status look(Instance *instance, uint32_t known, double value, const uint32_t unknowns[],
+                   size_t count, double values[]) {
+    memset(instance->work, 0, hb_component.work * sizeof *instance->work);
+    instance->block[known] = value;
+    instance->outdated = instance->rates_outdated = true;
+    return instance_get(instance, unknowns, count, values);
+}
+
+static Status add_difference(Instance *instance, uint32_t known, double seed,
+                             const uint32_t unknowns[], size_t count, double both[],
+                             double sensitivity[]) {
+    const HbReal *real = &hb_component.reals[known];
+    bool bounded = hb_component.access[known] == HB_FIXED ||
+                   hb_component.access[known] == HB_TUNABLE;
+    double value = instance->block[known], size = value != 0.0 ? fabs(value) : real->nominal;
+    double low = value - MOVED * size, high = value + MOVED * size;
+    if (bounded && low < real->minimum)
+        low = value;
+    if (bounded && high > real->maximum)
+        high = value;
+    Status status = look(instance, known, low, unknowns, count, both);
+    if (status == STATUS_OK)
+        status = look(instance, known, high, unknowns, count, both + count);
+    for (size_t k = 0; status == STATUS_OK && k < count; k++)
+        sensitivity[k] += seed * (both[count + k] - both[k]) / (high - low);
+    return status;
+}
+
+/* The states are kept: they are where the next start is sought from. */
+static Status by_differences(Instance *instance, const uint32_t unknowns[], size_t unknown_count,
+                             const uint32_t knowns[], size_t known_count, const double seed[],
+                             double sensitivity[]) {
+    size_t length = hb_component.first_table;
+    double *kept = malloc((length + 2 * unknown_count) * sizeof *kept);
+    if (!kept)
+        return refuse(instance, "out of memory");
+    memcpy(kept, instance->block, length * sizeof *kept);
+    memset(sensitivity, 0, unknown_count * sizeof *sensitivity);
+    Status status = STATUS_OK;
+    for (size_t k = 0; status == STATUS_OK && k < known_count; k++) {
+        status = add_difference(instance, knowns[k], seed[k], unknowns, unknown_count,
+                                kept + length, sensitivity);
+        memcpy(instance->block, kept, length * sizeof *kept);
+    }
+    memset(instance->work, 0, hb_component.work * sizeof *instance->work);
+    instance->outdated = instance->rates_outdated = true;
+    free(kept);
+    return status;
+}
+
 Status instance_directional_derivative(Instance *instance, const uint32_t unknowns[],
                                        size_t unknown_count, const uint32_t knowns[],
                                        size_t known_count, const double seed[],
@@ -69,17 +135,23 @@ Status instance_directional_derivative(Instance *instance, const uint32_t unknow
     Status status = prepare(instance);
     if (status != STATUS_OK)
         return status;
+    bool starting = instance->now.phase == PHASE_INITIALISATION;
+    bool made = starting && (hb_component.settle || hb_component.start);
     for (size_t k = 0; k < known_count; k++) {
-        if (!is_known(knowns[k]))
-            return instance_unknown(instance, "input or state", &knowns[k], 1);
+        made |= !is_known(knowns[k]);
+        if (starting ? !is_moved(knowns[k]) : !is_known(knowns[k]))
+            return instance_unknown(instance, starting ? "input, state or real parameter"
+                                                       : "input or state", &knowns[k], 1);
         instance->direction[knowns[k]] += seed[k];
     }
-    compute(instance);
-    for (size_t k = 0; k < unknown_count; k++) {
-        const double *tangent = tangent_of(instance, unknowns[k]);
-        if (!tangent)
+    for (size_t k = 0; k < unknown_count; k++)
+        if (!tangent_of(instance, unknowns[k]))
             return instance_unknown(instance, "output or derivative", &unknowns[k], 1);
-        sensitivity[k] = *tangent;
-    }
+    if (made)
+        return by_differences(instance, unknowns, unknown_count, knowns, known_count, seed,
+                              sensitivity);
+    compute(instance);
+    for (size_t k = 0; k < unknown_count; k++)
+        sensitivity[k] = *tangent_of(instance, unknowns[k]);
     return STATUS_OK;
 }

@@ -231,6 +231,7 @@ Status instance_set(Instance *instance, const uint32_t references[], size_t coun
         if (reference < hb_component.first_table && hb_component.access[reference] == HB_INPUT &&
             is_finite(values[i])) {
             instance->block[reference] = values[i];
+            instance->now.end_node = 0;
         } else {
             Status status = instance_is_real(reference)
                                 ? set_checked(instance, reference, values[i])

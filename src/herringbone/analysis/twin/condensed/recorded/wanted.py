@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.twin.condensed.equations import Equations
+from herringbone.analysis.twin.condensed.equations import Equations, settle_laws
 from herringbone.analysis.twin.condensed.modes import Modes
 from herringbone.analysis.twin.condensed.recorded.observing import Shown, call_parts
 from herringbone.analysis.twin.condensed.system import Condensed
@@ -66,6 +66,7 @@ class Wanted:
         system: its equations show `places_seen`.
         affine: which of these are.
         columns: `instance.variable`.
+        settled: as after all ramps.
 
     Attributes:
         columns: as given.
@@ -74,8 +75,15 @@ class Wanted:
         rows: the affine columns', then what the other columns' parts are given.
     """
 
-    def __init__(self, system: Condensed, affine: np.ndarray, columns: Sequence[str]) -> None:
+    def __init__(
+        self,
+        system: Condensed,
+        affine: np.ndarray,
+        columns: Sequence[str],
+        settled: bool = False,
+    ) -> None:
         self.columns, self._system, self._affine = tuple(columns), system, affine
+        self._settled = settled
         twin, first = system.twin, system.twin.layout.block_first
         wanted = [twin.index(c) for c in columns]
         rows = {place: row for row, place in enumerate(places_seen(twin))}
@@ -102,14 +110,18 @@ class Wanted:
             np.concatenate([equations.g[chosen], g]),
         )
         self._blocks = twin.block.copy()
+        if settled:
+            settle_laws(twin, self._blocks)
         self._addresses = _integers(signals_address(twin.instances[p].component.name) for p in own)
         self._first = _integers(first[p] for p in own)
         self._targets = _integers(targets)
         self._read = _integers(wanted[k] for k in self.there)
 
-    def __reduce__(self) -> tuple[type["Wanted"], tuple[Condensed, np.ndarray, Sequence[str]]]:
+    def __reduce__(
+        self,
+    ) -> tuple[type["Wanted"], tuple[Condensed, np.ndarray, Sequence[str], bool]]:
         """Made anew: addresses are those of a process."""
-        return Wanted, (self._system, self._affine, self.columns)
+        return Wanted, (self._system, self._affine, self.columns, self._settled)
 
     @property
     def shown(self) -> Shown:
@@ -146,7 +158,7 @@ class Wanted:
     def observed(self, times: np.ndarray, states: np.ndarray) -> np.ndarray:
         """The same from all states (n, times); needed if `whole`."""
         names = [self.columns[k] for k in self.there]
-        return self._system.twin.observe(times, states, names)
+        return self._system.twin.observe(times, states, names, self._blocks)
 
 
 def _part_of(twin: Twin, place: int) -> int:

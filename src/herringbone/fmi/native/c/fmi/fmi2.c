@@ -38,14 +38,15 @@ void fmi2FreeInstance(fmi2Component c) {
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance,
                                fmi2Real start, fmi2Boolean stop_defined, fmi2Real stop) {
-    (void)stop_defined, (void)stop;
     Instance *instance = c;
     if (!instance)
         return fmi2Error;
     if (instance->now.phase != PHASE_INSTANTIATED)
         return (fmi2Status)instance_refuse(instance, "setupExperiment");
     Status status = instance_set_tolerance(instance, tolerance_defined, tolerance);
-    return (fmi2Status)(status == STATUS_OK ? instance_set_time(instance, start, "start time")
+    if (status == STATUS_OK)
+        status = instance_set_time(instance, start, "start time");
+    return (fmi2Status)(status == STATUS_OK ? instance_set_stop(instance, stop_defined, stop)
                                             : status);
 }
 

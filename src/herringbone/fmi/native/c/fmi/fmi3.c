@@ -93,7 +93,6 @@ void fmi3FreeInstance(fmi3Instance c) {
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_defined,
                                        fmi3Float64 tolerance, fmi3Float64 start,
                                        fmi3Boolean stop_defined, fmi3Float64 stop) {
-    (void)stop_defined, (void)stop;
     Instance *instance = c;
     if (!instance)
         return fmi3Error;
@@ -102,6 +101,8 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_def
     Status status = instance_set_tolerance(instance, tolerance_defined, tolerance);
     if (status == STATUS_OK)
         status = instance_set_time(instance, start, "start time");
+    if (status == STATUS_OK)
+        status = instance_set_stop(instance, stop_defined, stop);
     return (fmi3Status)(status == STATUS_OK ? instance_enter_initialisation(instance) : status);
 }
 
