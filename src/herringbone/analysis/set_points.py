@@ -91,7 +91,7 @@ def at_pinion(
         )
     found: dict[str, float] = {}
     if speed is not None:
-        found[_speed_of(system, pairs[0])] = speed
+        found[speed_of(system, pairs[0])] = speed
     if torque is not None:
         (pinion,) = known.ports(pairs[0], PortKind.FLANGE, GEARS[0])
         found[f"{pairs[0]}.{pinion.name}.tau"] = torque
@@ -119,11 +119,11 @@ def _start_speed(system: System) -> str:
     pairs = [n for n in anatomy(system).with_role(Role.GEAR_PAIR) if not system.part(n).foreign]
     if not pairs or not system.foreign_parts:
         return ""
-    speeds = settings({_speed_of(system, pair): "RAD_PER_S" for pair in pairs})
+    speeds = settings({speed_of(system, pair): "RAD_PER_S" for pair in pairs})
     return f"; where the start is no equilibrium, {speeds} is the gears' speed, else 0"
 
 
-def _speed_of(system: System, pair: str) -> str:
+def speed_of(system: System, pair: str) -> str:
     """Path of the state that is the speed of a gear pair's pinion."""
     declaration = component(str(system.part(pair).component)).declaration
     turning = next(v.name for v in declaration.states if v.steady == "rotating")

@@ -10,7 +10,9 @@ from herringbone.analysis.answered import Answered
 from herringbone.analysis.rigid_rotation import names_of_states, steady_rows, units_of_states
 from herringbone.analysis.slopes import slopes
 from herringbone.analysis.twin.monolithic import Twin
+from herringbone.components.registry import component
 from herringbone.core import EquilibriumError
+from herringbone.core.names import first_of
 from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System
 
@@ -25,6 +27,9 @@ SCALE = {
 }  # fmt: skip
 """Sizes of states, by unit; others 1."""
 _RANK = 1e-12
+_HUGE = 1e100
+"""Scaled slope whose square is no number any more."""
+_STIFFNESSES, _SHOWN = {"N/m", "N.m/rad"}, 3
 
 
 def steady_rotation(
@@ -78,15 +83,35 @@ def steady_rotation(
             best, since = scaled, iteration
         if iteration - since >= _PATIENCE:
             break
+        if not np.isfinite(jacobian).all() or not np.isfinite(rows).all() or rows.max() > _HUGE:
+            raise EquilibriumError(
+                f"no steady rotation of '{system.name}': its equations give no usable numbers near "
+                "the start; look for torques, speeds or parameters far beyond what it is made for"
+            )
         step = np.linalg.lstsq(jacobian / rows[:, None], -r / rows, rcond=_RANK)[0] * scale * free
         x, r = _line_search(residual, x, r, step, rows)
     names = [f"the rate of {name}" for name in names_of_states(twin)]
     worst = [*(names[k] for k in keep), *zero][int(np.argmax(np.abs(r / rows)))]
     raise EquilibriumError(
         f"no steady rotation of '{system.name}' was found in {iteration + 1} iterations: {worst} "
-        "does not vanish; look for a load there that nothing balances, or start with "
-        f"{option('start', 'rest')}"
+        f"does not vanish; look for {_nothing_carries(system)}a load there that nothing balances "
+        f"or that is beyond what drives, or start a run with {option('start', 'rest')}"
     )
+
+
+def _nothing_carries(system: System) -> str:
+    """Stiffnesses that were set to 0, for a message; "": none were."""
+    found = []
+    for part in system.parts:
+        if part.component:
+            d = component(part.component).declaration
+            units = {v.name: v.unit for v in d.parameters}
+            found += [
+                f"{part.name}.{name} = 0 {units[name]}"
+                for name, value in part.values.items()
+                if units.get(name) in _STIFFNESSES and value == 0.0
+            ]
+    return f"{first_of(found, _SHOWN)}, where nothing carries, " if found else ""
 
 
 def scales(twin: Twin) -> np.ndarray:

@@ -63,6 +63,8 @@ def swung_out(
 
     def rate(x: np.ndarray) -> np.ndarray:
         even, faster = (_rate(twin, answered, x, a) for a in (0.0, 1.0))
+        if not (np.isfinite(even).all() and np.isfinite(faster).all()):
+            return np.full_like(even, np.inf)
         by_acceleration = faster - even
         a = even[speed] / (rotation[speed] - by_acceleration[speed])
         return even + a * (by_acceleration - rotation) - turning_on

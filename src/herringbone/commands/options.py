@@ -40,8 +40,16 @@ def add_scene(sub: argparse.ArgumentParser, *, optional: bool = False) -> None:
 
 def add_operating_point(sub: argparse.ArgumentParser) -> None:
     """Declare speed and torque; see `operating_point`."""
-    sub.add_argument("--speed", type=float, help="of the pinion in r/min; the scene's if not given")
-    sub.add_argument("--torque", type=float, help="at the pinion in N m; the scene's if not given")
+    sub.add_argument(
+        "--speed", type=float,
+        help="speed set point in r/min, as 'list' names it: of its own shaft, most often the "
+        "pinion's; the scene's if not given",
+    )  # fmt: skip
+    sub.add_argument(
+        "--torque", type=float,
+        help="torque set point in N m, of the pinion; of a source or load that has its own, of its "
+        "shaft; the scene's if not given",
+    )  # fmt: skip
 
 
 def add_comparison(sub: argparse.ArgumentParser) -> None:

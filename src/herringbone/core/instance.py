@@ -66,7 +66,7 @@ class Instance:
         """Set a real variable or a String parameter.
 
         Raises:
-            ParameterError: unknown name, wrong type, not finite, or outside the range.
+            ParameterError: unknown name, wrong type, not finite, outside the range, or computed.
         """
         if name in self.texts:
             if not isinstance(value, str):
@@ -75,13 +75,15 @@ class Instance:
                 self.texts[name] = value
                 self._stale_resources = True
             return
-        index = self._known(name)
+        index, d = self._known(name), self.component.declaration
+        if d.first_output <= index < d.mutable_size:
+            raise ParameterError(f"{self.name}.{name} = {value}: it is computed there, not set")
         if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.number):
             raise ParameterError(
                 f"{self.name}.{name} = {value!r}: it takes a number{self._unit(name)}"
             )
-        if index >= self.component.declaration.mutable_size:
-            check_value(self.name, self.component.declaration.variable(name), float(value))
+        if index >= d.mutable_size:
+            check_value(self.name, d.variable(name), float(value))
             self.work[:] = 0.0  # what kernels keep there follows from parameters
         elif not math.isfinite(value):
             raise ParameterError(f"{self.name}.{name} = {value}: it must be finite")

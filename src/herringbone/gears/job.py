@@ -69,6 +69,8 @@ class GearJob:
         check_calibration(self.calibration)
         if not self.pinion_torque > 0.0:
             raise ParameterError(f"torque {self.pinion_torque:g} N m must be positive")
+        if not 4 <= self.slices <= 1000:
+            raise ParameterError(f"slices = {self.slices} must lie between 4 and 1000")
         if not 4 <= self.phases <= 128:
             raise ParameterError(f"phases = {self.phases} must lie between 4 and 128")
         needed = self.pair.tooth_forces(self.pinion_torque).normal

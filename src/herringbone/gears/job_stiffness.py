@@ -12,7 +12,9 @@ from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness, Uncertaint
 from herringbone.gears.stiffness.methods import (
     AUTO,
     METHODS,
+    Accuracy,
     Task,
+    accuracy_of,
     chosen_method,
     has_finite_elements,
     mesh_stiffness,
@@ -26,17 +28,16 @@ _BOUNDS = ("mean", "harmonics")
 
 
 @cache
-def _tell_missing(pinion_teeth: int, wheel_teeth: int, name: str) -> None:
+def _tell_missing(pinion_teeth: int, wheel_teeth: int, title: str, accuracy: Accuracy) -> None:
     """Say once for each pair of teeth what is taken without the best method."""
-    chosen = METHODS[name]
     _LOG.warning(
         "the stiffness table of z %d/%d is made by %s, its mean within %g %% and its harmonics "
         "within %g %%, because the extra 'fe' is missing: pip install 'herringbone[fe]'",
         pinion_teeth,
         wheel_teeth,
-        chosen.title,
-        100.0 * chosen.accuracy.mean,
-        100.0 * chosen.accuracy.share,
+        title,
+        100.0 * accuracy.mean,
+        100.0 * accuracy.share,
     )
 
 
@@ -60,7 +61,7 @@ def stiffness_for(
     name, task = chosen_method(asked), job.task()
     chosen = METHODS[name]
     if asked == AUTO and name != "fe":
-        _tell_missing(*job.pair.number_of_teeth, name)
+        _tell_missing(*job.pair.number_of_teeth, chosen.title, accuracy_of(name, job.pair))
 
     def make() -> Arrays:
         if name == "fe" and not has_finite_elements():

@@ -73,9 +73,10 @@ def run(
     Args:
         system: name of a shipped system, folder with system.toml, .ssp file, or a System.
         scene: name or file of a scene; the system's "loaded" if not given.
-        speed: of the pinion [rad/s], where the system declares a set point of it, or nothing is
-            joined to its gear pair; the scene's if not given, as in `herringbone.sweep`.
-        torque: at the pinion [N m], likewise.
+        speed: of the set point that the system declares, at its own shaft (most often the
+            pinion's; in `turbine` the wheel's), or of the pinion if nothing is joined to its gear
+            pair [rad/s]; the scene's if not given, as in `herringbone.sweep`.
+        torque: likewise [N m].
         algorithm: coupling algorithm, such as `LI(degree=3)` or "li:degree=3"; "auto", the
             default, takes li if all parts can repeat a step, and jacobi otherwise; see `step` for
             what it is asked.

@@ -110,6 +110,7 @@ def sweep(
     chosen = evaluator or _suited(known, wishes)
     check_columns(known, chosen.columns)
     _check_wishes(wishes, chosen, series=series)
+    _check_once(known, study.names, wishes.values)
     units = {name: _unit(known, name) for name in study.names}
     units |= {SPEED: study.speed_unit} if SPEED in units else {}
     first = study.point(0)
@@ -174,6 +175,19 @@ def _found(system: str | Path) -> str:
     """A system as processes in other folders find it."""
     there = Path(system)
     return str(there.absolute()) if there.is_dir() or is_file(there) else str(system)
+
+
+def _check_once(known: System, names: Sequence[str], fixed: Mapping[str, object]) -> None:
+    """Raise ParameterError if a variable is varied under two names, or varied and set besides."""
+    seen: dict[object, str] = {}
+    for name in (*names, *fixed):
+        if name in SET_POINTS or name.rpartition(".")[0] in known.sensors:
+            continue
+        first = seen.setdefault(known.split(name), name)
+        if first != name:
+            raise ParameterError(f"{first} and {name} are the same variable; give one of them")
+    if twice := sorted(set(names) & set(fixed)):
+        raise ParameterError(f"{twice[0]} is varied, and set besides; give one of them")
 
 
 def _unit(system: System, name: str) -> str:

@@ -1,9 +1,9 @@
 """Comparison of two runs: how far apart they are, and levels and orders side by side.
 
 Differences are those of `apart`, at common times, over the alternating part of the second run.
-Levels are root mean squares of the alternating parts over each run's own steady part, of the
-channels of a group together; orders are amplitudes at multiples of each run's own mesh frequency,
-Hann-windowed, of the channel in which they are largest.
+Levels are root mean squares of the alternating parts over the steady part, within the time that
+both runs have, of the channels of a group together; orders are amplitudes at multiples of each
+run's own mesh frequency, Hann-windowed, of the channel in which they are largest.
 """
 
 from collections.abc import Sequence
@@ -123,6 +123,7 @@ def compare(first: Result | str | Path, second: Result | str | Path, *patterns: 
     if not shared:
         raise ParameterError(f"{ours.name} and {theirs.name} have no columns in common")
     times, values, notes = _at_common_times(ours, theirs, shared)
+    ours, theirs = (_within(side, times[0], times[-1]) for side in (ours, theirs))
     if stands_still(theirs.result):
         values = values[0], np.tile(values[1].mean(axis=0), (len(times), 1))
         notes += (f"nothing turns in {theirs.name}: no difference is over its alternating part",)
@@ -144,6 +145,13 @@ def compare(first: Result | str | Path, second: Result | str | Path, *patterns: 
         changed_resources(ours.result, theirs.result),
         (*notes, *why, *_of_phase(of_groups)),
     )
+
+
+def _within(side: Sides, begin: float, end: float) -> Sides:
+    """The part of a run that is compared: levels and orders of both are over the same time [s]."""
+    data = side.result.data
+    rows = (data[TIME] >= begin - _SAME * end) & (data[TIME] <= end * (1.0 + _SAME))
+    return side._replace(result=replace(side.result, data=data[rows].reset_index(drop=True)))
 
 
 def _of_phase(groups: pd.DataFrame) -> tuple[str, ...]:

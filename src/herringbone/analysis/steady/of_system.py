@@ -6,7 +6,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
+from herringbone.analysis.rigid_rotation import names_of_states
+from herringbone.analysis.steady.harmonic_balance.problem import STILL, Problem, Samples
+from herringbone.analysis.steady_search import scales
 from herringbone.analysis.twin.condensed.equations import laws_of, settle_laws
 from herringbone.analysis.twin.condensed.laws import laws_along
 from herringbone.analysis.twin.condensed.system import Condensed
@@ -68,6 +70,7 @@ def problem_of(system: Condensed, late: float) -> Problem:
             f"{system.twin.system.name}: {modes.angles.size} shafts rotate independently of each "
             "other, so that their motion does not repeat"
         )
+    _refuse_neutral(system)
     table = system.table(calls)
     rotating = modes.angles.size == 1
     size = np.abs(system.equations.c) @ np.abs(modes.rigid)
@@ -85,6 +88,24 @@ def problem_of(system: Condensed, late: float) -> Problem:
         _means(modes.tangent[table.value], system.directions),
         SystemLaws(system, late),
     )
+
+
+def _refuse_neutral(system: Condensed) -> None:
+    """Raise StructureError if a state, but the rotation, stays wherever it was brought to."""
+    modes = system.modes
+    if not modes.angles.size:
+        return
+    turns = np.abs(modes.turns[0])
+    still = np.abs(modes.rates) <= STILL * np.abs(modes.rates).max(initial=0.0)
+    neutral = np.flatnonzero(still & (turns > 0.0) & (turns <= _NONE * turns.max()))
+    if neutral.size:
+        shape = np.abs(modes.shapes[:, neutral[0]]) / scales(system.twin)
+        name = names_of_states(system.twin)[int(np.argmax(shape))]
+        raise StructureError(
+            f"{system.twin.system.name}: {name} stays wherever it was brought to before, so that "
+            "its steady state is not one alone and is not sought; take a run, in sweeps transient "
+            "ones"
+        )
 
 
 def _means(tangent: np.ndarray, directions: np.ndarray) -> np.ndarray:

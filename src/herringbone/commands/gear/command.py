@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
     from herringbone.gears.load.figures import Conditions
 
+_MOST = 0.01
+"""Symmetry deviation [m], of either sign."""
+
 
 def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private)
     """Add the command to those of the program."""
@@ -77,6 +80,11 @@ def _conditions(options: argparse.Namespace) -> "Conditions":
     if options.symmetry_deviation is not None:
         text = _spaced(options.symmetry_deviation)
         deviation = quantity(text, "length", "--symmetry-deviation")
+        if not abs(deviation) <= _MOST:
+            raise ParameterError(
+                f"--symmetry-deviation {options.symmetry_deviation}: it must lie between "
+                f"{-_MOST:g} and {_MOST:g} m, as the gear mesh takes it"
+            )
         stiffness = RIGID if held == "rigid" else _number(held or "0")
         symmetry = Symmetry(deviation, stiffness)
     elif held is not None:

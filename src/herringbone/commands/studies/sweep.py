@@ -198,7 +198,9 @@ def _evaluator(options: argparse.Namespace, wishes: "Wishes") -> "Evaluator | No
 def _refuse_of_states(options: argparse.Namespace) -> None:
     """Refuse what is of steady states alone; raises ParameterError."""
     why = "of steady states whose equations are all known"
-    refuse_given(options, ("sensitivities", "solver"), why)
+    refuse_given(options, ("solver",), why)
+    if options.sensitivities is not None:  # without names: of all dampings
+        raise ParameterError(f"--sensitivities: {why}")
 
 
 def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:

@@ -67,6 +67,7 @@ class Loaded:
 
 def check_conditions(job: GearJob, conditions: Conditions) -> None:
     """Check conditions before anything long is computed; raises ParameterError."""
+    job.task()
     _dynamic_factor(job, conditions)
     if (symmetry := conditions.symmetry) is not None:
         check_held(

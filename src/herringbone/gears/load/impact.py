@@ -1,9 +1,19 @@
-"""The meshing impact of a pair at an operating point; see `geometry.corner_contact`."""
+"""The meshing impact of a pair at an operating point; see `geometry.corner_contact`.
+
+It is that without relief, of corners that meet the plain flank. So the deflection is that of plain
+teeth, too: under relief the approach has the gap in it, and does not bring the corner closer.
+"""
+
+import numpy as np
 
 from herringbone.gears.geometry.corner_contact import Impact, meshing_impact
+from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.job import GearJob
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.gears.stiffness.slices import SliceMesh
+
+_PHASES = 32
+"""Of a mesh period, over which the stiffness of plain teeth is averaged."""
 
 
 def impact_at(job: GearJob, stiffness: MeshStiffness, speed: float, load: float) -> Impact:
@@ -19,5 +29,8 @@ def impact_at(job: GearJob, stiffness: MeshStiffness, speed: float, load: float)
         ParameterError: the load is too large for the pair.
     """
     mesh = SliceMesh(job.pair, calibration=job.task().calibration_of("slices"))
-    deflection = load / stiffness.mean(load)
+    plain = stiffness.mean(load)
+    if job.modification != Modification():
+        plain = float(np.mean(mesh.solve([load], _PHASES).secant))
+    deflection = load / plain
     return meshing_impact(job.pair, speed, deflection, mesh.single_pair_stiffness(load))

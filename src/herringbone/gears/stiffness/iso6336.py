@@ -82,8 +82,9 @@ def virtual_number_of_teeth(pair: "GearPair", gear: int) -> float:
 
 
 def _theoretical(pair: "GearPair") -> float:
-    z1, z2 = (virtual_number_of_teeth(pair, gear) for gear in range(2))
-    x1, x2 = pair.profile_shift_coefficient
+    pinion = 0 if pair.number_of_teeth[0] <= pair.number_of_teeth[1] else 1  # ISO's gear 1
+    z1, z2 = (virtual_number_of_teeth(pair, gear) for gear in (pinion, 1 - pinion))
+    x1, x2 = (pair.profile_shift_coefficient[gear] for gear in (pinion, 1 - pinion))
     compliance = 0.04723 + 0.15551 / z1 + 0.25791 / z2
     compliance -= 0.00635 * x1 + 0.11654 * x1 / z1 + 0.00193 * x2 + 0.24188 * x2 / z2
     compliance += 0.00529 * x1**2 + 0.00182 * x2**2

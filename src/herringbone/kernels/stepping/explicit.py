@@ -25,7 +25,7 @@ from herringbone.kernels.stepping.local_error import Slots, error_measure, facto
 
 TOO_SMALL = 3
 """Status of a step in which the tolerance asked for inner steps below SMALLEST."""
-SMALLEST = 1e-10
+SMALLEST = 1e-13
 """Length of the smallest inner step [s]."""
 _BENT = 6.0
 """Of the longest step, and the root of the tolerance: steps in which a law bends, unseen by the

@@ -226,9 +226,11 @@ def _with_rising(system: System, spec: PartSpec, point: _SetPoint) -> System:
     name = f"{spec.name}_{_NAMES.sub('_', point.name).strip('_')}_rising"
     assert point.value is not None
     part = PartSpec(PartPath(name), component=kind, values={final.name: point.value})
+    kept = {n: v for n, v in spec.values.items() if n != point.name}  # the new part has it now
+    others = (replace(p, values=kept) if p.name == spec.name else p for p in system.parts)
     return replace(
         system,
-        parts=(*system.parts, part),
+        parts=(*others, part),
         connections=(
             *system.connections,
             (f"{name}.{output}", f"{spec.name}.{point.name}"),

@@ -7,10 +7,12 @@ from dataclasses import replace
 from numbers import Real
 from pathlib import Path
 
-from herringbone.analysis.anatomy import value_at
+from herringbone.analysis.anatomy import anatomy, value_at
+from herringbone.analysis.fastest import check_speed
 from herringbone.analysis.set_points import QUANTITIES, SPEED, TORQUE, at_pinion, set_point
 from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, ParameterError
+from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system import System
 from herringbone.running.fitted import housings_of
@@ -87,6 +89,8 @@ def operated(
             raise ParameterError(f"{name} = {value!r}: it must be a finite number")
     structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
     known = with_known_values(structure, load_scene(folder, scene), wishes)
+    if speed is not None:
+        _check_speed(known, speed)
     given = {known.split(path): path for path in wishes.values}
     for name, value in asked.items():
         values = _values(known, name, value)
@@ -94,6 +98,15 @@ def operated(
             raise ParameterError(f"{name} decides on {twice[0]}, which is given besides; drop one")
         wishes = replace(wishes, values={**wishes.values, **values})
     return wishes
+
+
+def _check_speed(system: System, speed: float) -> None:
+    """Raise ParameterError if the teeth of the first pair could not mesh so fast."""
+    known = anatomy(system)
+    for pair in known.with_role(Role.GEAR_PAIR)[:1]:
+        column = known.column(pair, Quantity.NUMBER_OF_TEETH, GEARS[0])
+        if column and not system.part(pair).foreign:
+            check_speed(speed, value_at(system, column))
 
 
 def _values(system: System, name: str, value: float) -> dict[str, float]:

@@ -85,7 +85,11 @@ def correct_at_once(
     if not found.unknown.size:
         return step
     matrix = jacobian(answer, found, order)
-    solved = np.linalg.solve(matrix, packed(off[found.unknown, : order + 1]))
+    wanted = packed(off[found.unknown, : order + 1])
+    try:
+        solved = np.linalg.solve(matrix, wanted)
+    except np.linalg.LinAlgError:  # a law that does not bend where the search begins, as a limit
+        solved = np.linalg.lstsq(matrix, wanted, rcond=None)[0]
     step[found.unknown, : order + 1] = unpacked(solved, order)
     return step
 

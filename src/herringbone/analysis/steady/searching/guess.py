@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.fastest import check_speed
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.fourier import on
 from herringbone.analysis.steady.harmonic_balance.lattice import lines_between
@@ -14,8 +15,7 @@ from herringbone.analysis.steady.marching.march import March
 from herringbone.analysis.steady.marching.marched import marched
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
-from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.declaring.units import R_MIN
+from herringbone.core import HerringboneError
 
 PLACES = 64
 """Points in time of a mesh period, at first."""
@@ -35,9 +35,6 @@ _FARTHEST = 2.0
 """Way to a point beyond two neighbours, over the way between them, up to which a line leads on."""
 _SHORTEST, _LONGEST = 1e-7, 100.0
 """Periods [s] that a march follows."""
-_FASTEST = 1e6
-"""Mesh frequency [Hz] beyond which no body of a tooth is left that could be elastic: in a period
-sound in steel goes 5 mm."""
 
 
 class Guess(NamedTuple):
@@ -187,16 +184,6 @@ def turns(still: Orbit) -> bool:
     return 1.0 / _LONGEST <= still.response.frequency / (2.0 * np.pi) <= 1.0 / _SHORTEST
 
 
-def _check_speed(structure: Structure, speed: float) -> None:
-    most = 2.0 * np.pi * _FASTEST * structure.turns_of_pinion / structure.meshes
-    if abs(speed) > most:
-        raise ParameterError(
-            f"speed = {speed:g} rad/s ({speed * R_MIN:g} r/min): at most {most:.4g} rad/s "
-            f"({most * R_MIN:.4g} r/min), where teeth mesh {_FASTEST:g} times a second and sound "
-            "goes through a tooth but once; ask for a lower speed"
-        )
-
-
 def motion_at(structure: Structure, point: Point) -> Motion:
     """What is given of the motion at an operating point.
 
@@ -210,7 +197,7 @@ def motion_at(structure: Structure, point: Point) -> Motion:
     if problem.free is not None:
         speed = float((problem.turns @ condensed.modes.start).real)
     if point.speed is not None:
-        _check_speed(structure, point.speed)
+        check_speed(point.speed, structure.meshes / structure.turns_of_pinion)
         if problem.free is not None:
             speed = point.speed * structure.turn / (2.0 * np.pi * structure.turns_of_pinion)
     return Motion(given, structure.turn, speed, angle=float(condensed.modes.angles[0]))

@@ -117,6 +117,8 @@ static bool blame_input(Instance *instance, double step_size) {
     double jump = instance->jumps[input * JUMPS + (instance->steps - 1) % JUMPS];
     double value = instance->ahead[input] + jump;
     Jumps jumps = jumps_of(instance, input);
+    if (jumps.turns == 0 && !(fabs(jump) > 0.5 * jumps.newer))
+        return false; /* it is some steps ago */
     if (jumps.turns == 0) {
         instance_fail(instance, STATUS_DISCARD,
                       "%s.%s = %g %s after %g %s: it jumps, and no step of %g s can be computed "

@@ -35,7 +35,7 @@ static Status explain_failure(Instance *instance, int32_t failed, double step_si
         return STATUS_DISCARD;
     if (failed == INNER_STEPS_TOO_SMALL && hb_component.tolerance)
         return instance_fail(instance, STATUS_DISCARD,
-                             "%s: the tolerance %g asks for inner steps below 1e-10 s under steady "
+                             "%s: the tolerance %g asks for inner steps below 1e-13 s under steady "
                              "inputs: the inner step is the cause, whatever the communication step "
                              "size; give a larger tolerance, or smaller inputs",
                              instance->name, instance->block[hb_component.tolerance]);

@@ -21,12 +21,15 @@ from herringbone.kernels.condensed.in_block.places import (
 
 _LINEAR = 1e-7
 """Largest deviation of rates, over the sizes of the terms that are added."""
+_TURNED = 30.0
+"""Angle [rad] by which all that rotates is turned, so that what comes in over some turns, as an
+unbalance does, is there; differences of larger angles have too few digits."""
 
 
 def checker(
     form: Form, at: WorkPlaces, equations: Equations
 ) -> Callable[[np.ndarray, np.ndarray, float], bool]:
-    """Compile holds(b, w, t) -> bool, at the block's states and where all are larger; they stay.
+    """Compile holds(b, w, t) -> bool, at the block's states and farther on; they stay.
 
     It notes which outputs are not affine.
 
@@ -44,7 +47,7 @@ def checker(
 
     @outside(owner)
     def holds(b: np.ndarray, w: np.ndarray, t: float) -> bool:
-        """True if it does here, and where all states are larger, now and later."""
+        """True if it does here, and later where all states are larger and have turned on."""
         kept = w[of.room : of.room + n + input_count]
         for i in range(n):
             kept[i] = b[i]
@@ -55,6 +58,10 @@ def checker(
         for i in range(int(w[at.inside])):
             state = int(w[at.states + i])
             b[state] += sizes[state]
+            for r in range(int(w[at.rotations])):
+                b[state] += _TURNED * w[at.rigid + r * n + state]
+        for r in range(int(w[at.rotations])):
+            b[int(w[at.references + r])] += _TURNED
         found = found and agrees(b, w, t + LONG_AFTER)
         for i in range(n):
             b[i] = kept[i]
