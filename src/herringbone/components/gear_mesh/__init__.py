@@ -92,8 +92,8 @@ nothing is lost. Without separation both are the same above the transition.
 
 h is the meshing impact of the flank that carries: q is impact_force there, 0 on the other flank;
 h(p) = (1 - cos(2 pi f / impact_duration)) / 2 where f, the fractional part of p, is below
-impact_duration, else 0. p is the phase of the contact itself, on either flank; where it falls, as on
-the coast flank turning forward, h comes as teeth leave.
+impact_duration, else 0. p is the phase of the contact itself, on either flank; where it falls, as
+on the coast flank turning forward, h comes as teeth leave.
 
 **Normal force** of a mesh: N = P on the drive flank, -P on the coast flank (their sum, if both
 should touch).
