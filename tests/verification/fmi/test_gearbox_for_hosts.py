@@ -358,3 +358,16 @@ def test_derivatives_in_initialisation_are_those_of_the_balanced_start(unknown, 
         there.append(host.get(unknown)[0])
     assert slope == pytest.approx((there[1] - there[0]) / 0.4, rel=1e-5)
     assert slope > 1.0
+
+
+def test_shafts_that_hang_free_in_a_clearance_start_where_they_settle(tmp_path):
+    """No stiffness leads there: it could not be exported, and as a parameter began with a blow."""
+    clearance = {"bearing_supports.pinion.radial_clearance": 1e-5}
+    file = export_fmu("gearbox", tmp_path / "g.fmu", wanted=Wanted(), values=clearance)
+    host, rows = Fmi2Host(file, tmp_path / "fmu"), []
+    for k in range(300):
+        host.step(k * 1e-4, 1e-4)
+        rows.append(host.get("bearing.pinion_left.f_y")[0])
+    first, last = np.array(rows[:50]), np.array(rows[200:])
+    assert np.ptp(first) < 1.01 * np.ptp(last)
+    assert first.mean() == pytest.approx(last.mean(), rel=1e-3)

@@ -132,7 +132,10 @@ def _room(boundary: Boundary, parts: Parts) -> tuple[int, int]:
     count = parts.layout.state_first[-1] + sum(len(own_states(f)) for f in boundary.flanges)
     found = coordinates(boundary, parts)
     unknowns = sum(not c.turns for c in found) + sum(bool(f.shaft) for f in boundary.flanges)
-    return count, count + max(
+    clearances = sum(
+        len(i.component.declaration.offered(Quantity.CLEARANCE)) for i in parts.instances
+    )
+    return count, count + clearances + max(
         newton_scratch(unknowns), radius_scratch(count), periodic_scratch(count, len(found))
     )
 

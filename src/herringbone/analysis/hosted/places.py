@@ -185,6 +185,7 @@ class Places:
                 (index[n], index[f"{n}.guess_drive"], index[f"{n}.guess_coast"]) for n in names
             ),
             forces=tuple(forces),
+            clearances=self._clearances(),
             locals=tuple(
                 (index[v.name], self.hosted[v.name]) for v in locals_ if self._is_local(v.name)
             ),
@@ -211,6 +212,14 @@ class Places:
         offered = pair.component.declaration.offered(Quantity.NUMBER_OF_TEETH)
         of = {v.place: self.inside[full_name(pair, v.name)] for v in offered}
         return of[GEARS[0]], of[GEARS[1]]
+
+    def _clearances(self) -> tuple[int, ...]:
+        """Clearances of all parts, in the blocks of the parts."""
+        return tuple(
+            first + i.component.declaration.index[v.name]
+            for first, i in zip(self.parts.layout.block_first, self.parts.instances, strict=False)
+            for v in i.component.declaration.offered(Quantity.CLEARANCE)
+        )
 
     def starts(self) -> str:
         """Calls of the parts' start kernels on their blocks."""

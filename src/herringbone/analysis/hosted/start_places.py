@@ -49,6 +49,7 @@ class StartPlaces:
         start_mode, flank, inner_step, step_start, stepping, degree: as in the declaration.
         guesses: by coordinate: where the search begins on the drive and on the coast flank.
         forces: mesh forces in the blocks of the parts.
+        clearances: in the blocks of the parts.
         locals: pairs: local, and its place in the blocks of the parts.
         keeps_states: states are set by the host if the start is as set.
         scratch: room in the block.
@@ -77,6 +78,7 @@ class StartPlaces:
     degree: int
     guesses: tuple[tuple[int, int, int], ...]
     forces: tuple[int, ...]
+    clearances: tuple[int, ...]
     locals: tuple[tuple[int, int], ...]
     keeps_states: bool
     scratch: int

@@ -3,7 +3,9 @@
 **Equilibrium.** Unknown are the elastic coordinates, at rest, and the offsets; wanted is that no
 elastic coordinate is accelerated, and that shafts carry their initial torques. The whole turns with
 the start speed, and is accelerated by what is left over of the torques. The angle stays 0. It is
-searched with the teeth in contact on the drive flank, then on the coast flank.
+searched with the teeth in contact on the drive flank, then on the coast flank. A shaft that hangs
+free in its clearance has no stiffness by which it would be found, so that clearances are opened
+step by step, from an equilibrium without.
 
 **Periodic start.** From there the motion is searched that repeats itself every mesh period, while
 the whole turns evenly; see `kernels.periodic.motion`.
@@ -71,6 +73,7 @@ def twisted(b: np.ndarray, t: float) -> None:
 {offsets}    return
 
 
+{opened}
 @kernel
 def on_flank(b: np.ndarray, t: float, flank: float) -> int:
     blocks = b[{first}:]
@@ -81,7 +84,7 @@ def on_flank(b: np.ndarray, t: float, flank: float) -> int:
             drive = b[GUESSES[i][1]]
             guess = drive if flank > 0.0 else b[GUESSES[i][2]]
             b[GUESSES[i][0]] = guess + flank * TRIALS[k] * drive
-        if search(b, t) == SETTLED:
+        if opened(b, t) == SETTLED:
             force = 0.0
             scatter(blocks, b[{own}:{states}])
             propagate(blocks, t)
@@ -132,6 +135,35 @@ def settle(b: np.ndarray, t: float) -> int:
 {starts}{keep}    return status
 """
 
+_OPENED = """
+CLEARANCES = {clearances!r}
+OPENINGS = 64
+
+
+@kernel
+def opened(b: np.ndarray, t: float) -> int:
+    blocks, kept, any_open = b[{first}:], b[{kept}:], False
+    for i in range({count}):
+        kept[i] = blocks[CLEARANCES[i]]
+        any_open = any_open or kept[i] > 0.0
+    if not any_open:
+        return search(b, t)
+    for n in range(OPENINGS + 1):
+        for i in range({count}):
+            blocks[CLEARANCES[i]] = kept[i] * (n / OPENINGS)
+        status = search(b, t)
+        if status != SETTLED:
+            break
+    for i in range({count}):
+        blocks[CLEARANCES[i]] = kept[i]
+    return status
+
+"""
+_CLOSED = """
+opened = search
+
+"""
+
 
 def start_source(flanges: list[FlangePlaces], s: StartPlaces, starts: str) -> str:
     """The kernels; `starts` calls the parts' start kernels on their blocks."""
@@ -161,7 +193,7 @@ def start_source(flanges: list[FlangePlaces], s: StartPlaces, starts: str) -> st
         own=s.own,
         count=count,
         torques=torques,
-        scratch=s.scratch + s.states,
+        scratch=s.scratch + s.states + len(s.clearances),
         owner=s.owner,
         speed=s.speed,
         speeds=speeds,
@@ -180,6 +212,7 @@ def start_source(flanges: list[FlangePlaces], s: StartPlaces, starts: str) -> st
         periodic=float(PERIODIC),
         as_set_mode=float(AS_SET),
         guess_count=len(s.guesses),
+        opened=_opened(s),
         forces="".join(f"            force += blocks[{i}]\n" for i in s.forces),
         step_start=s.step_start,
         start_mode=s.start_mode,
@@ -188,3 +221,13 @@ def start_source(flanges: list[FlangePlaces], s: StartPlaces, starts: str) -> st
         keep="".join(f"    b[{to}] = blocks[{at}]\n" for to, at in s.locals),
     )
     return f"\nGUESSES = {s.guesses!r}\n" + text
+
+
+def _opened(s: StartPlaces) -> str:
+    """The search that opens clearances, which are kept behind the states' derivatives."""
+    if not s.clearances:
+        return _CLOSED
+    count = len(s.clearances)
+    return _OPENED.format(
+        clearances=s.clearances, first=s.first, kept=s.scratch + s.states, count=count
+    )

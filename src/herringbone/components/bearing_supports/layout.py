@@ -72,7 +72,15 @@ def _parameters(gear: str) -> list[Variable]:
             parameter(f"{gear}.{name}", unit, told, start, minimum=0, quantity=what, place=gear)
             for name, unit, told, start, what in rows
         ),
-        parameter(f"{gear}.radial_clearance", "m", "diametral clearance", 0.0, minimum=0),
+        parameter(
+            f"{gear}.radial_clearance",
+            "m",
+            "diametral clearance",
+            0.0,
+            minimum=0,
+            quantity=Quantity.CLEARANCE,
+            place=gear,
+        ),
     ]
 
 

@@ -89,6 +89,7 @@ class Quantity(StrEnum):
     LOAD_RAMP_TIME = "load ramp time"
     RISING_VALUE = "rising value"
     FINAL_VALUE = "final value"
+    CLEARANCE = "clearance"
     SEAT_MOTION = "seat motion"
     MODES = "modes"
     SHAPES = "shapes"
