@@ -20,6 +20,10 @@ class Rotor:
         self._speed, self._turning, self._damping = speed, turning, damping
         self._load = STIFFNESS * 1e-3
 
+    def drive(self, torque):
+        """Besides what the shaft carries at the start [N m]."""
+        self._load += torque
+
     def run(self, inputs, h):
         angle, speed, flange, count = 1e-3, self._speed, 0.0, 1000
         for _ in range(count):
@@ -45,3 +49,14 @@ def test_speed_of_a_rotor(speed, flange, turning, damping):
     assert math.isnan(load)
     assert math.isnan(rate)
     assert found == pytest.approx(speed, abs=0.5)
+
+
+@pytest.mark.parametrize("turning", [False, True])
+def test_what_drives_a_rotor_at_rest_turns_nothing_yet(turning):
+    """Its damper feels the acceleration: 8 N m s/rad at 1257 N m looked like 3 rad/s."""
+    lab = Rotor(0.0, 0.0, turning, 8.0)
+    lab.drive(1257.0)
+    feedthrough = np.array([[0.0, 0.0, 0.0], [0.0, -STIFFNESS, -8.0]])
+    rules = (InputRule.MEAN, InputRule.START if turning else InputRule.MEAN, InputRule.MEAN)
+    _, found, _ = inner_speeds(lab, feedthrough, rules, (-1, 2, -1))
+    assert found == pytest.approx(0.0, abs=0.1)
