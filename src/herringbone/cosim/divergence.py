@@ -10,7 +10,7 @@ from herringbone.core.part import is_signal_node
 from herringbone.cosim.loops.common import BOUND
 from herringbone.cosim.structure.network import Network
 
-_AS_BEFORE, _FEWEST = 10.0, 8
+AS_BEFORE, _FEWEST = 10.0, 8
 """What grows by the coupling passes this multiple of what it was in the first half of the rows."""
 
 
@@ -67,8 +67,10 @@ def first_nan(times: np.ndarray, values: np.ndarray) -> dict[int, float]:
     return {int(k): float(times[nan[:, k].argmax()]) for k in np.flatnonzero(nan.any(axis=0))}
 
 
-def is_sudden(read: Callable[[], Iterable[np.ndarray]]) -> bool:
-    """True if records end without having grown: then a part, and not the coupling, ends them so.
+def growth(read: Callable[[], Iterable[np.ndarray]]) -> float | None:
+    """Largest value at the end of records over that of their first half; None of too few rows.
+
+    By it a part that ends a run is told from the coupling: see `AS_BEFORE`.
 
     Args:
         read: gives the records of all outputs, piece by piece (n, m), from the start each time.
@@ -80,13 +82,15 @@ def is_sudden(read: Callable[[], Iterable[np.ndarray]]) -> bool:
         if finite.size:
             number, last = first + int(finite[-1]), np.abs(rows[finite[-1]])
     if number + 1 < _FEWEST:
-        return False
+        return None
     before = np.zeros_like(last)
     for first, rows in _numbered(read()):
         half = rows[: max(number // 2 + 1 - first, 0)]
         finite = half[np.isfinite(half).all(axis=1)]
         before = np.maximum(before, np.abs(finite).max(axis=0, initial=0.0))
-    return bool((last <= _AS_BEFORE * before).all())
+    grown = last > 0.0
+    with np.errstate(divide="ignore"):
+        return float((last[grown] / before[grown]).max(initial=0.0))
 
 
 def _numbered(pieces: Iterable[np.ndarray]) -> Iterator[tuple[int, np.ndarray]]:

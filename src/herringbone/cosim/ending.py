@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.core.energy_report import Verdict
-from herringbone.cosim.divergence import broken_output, diverged
+from herringbone.cosim.divergence import AS_BEFORE, broken_output, diverged
 from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE, NOT_FINITE, PART_FAILED
 
@@ -20,6 +20,10 @@ _PROBLEMS = {
 }
 _BEGUN = 8
 """Macro steps of which nobody can say whether something has grown."""
+
+_GROWN = 1e6
+"""Growth by which a part's refusal is the coupling's doing: one that goes back from the step shows
+no value that is not finite."""
 
 
 class Ending:
@@ -102,6 +106,8 @@ class Ending:
         where, value = diverged(run.network, culprit)
         if where and not math.isfinite(value):
             return self._not_finite(where)
+        if status == PART_FAILED and not where and self._has_grown(_GROWN):
+            where = part.name
         if status == NOT_FINITE or where:
             return self._diverged(where or part.name, "grows beyond all bounds")
         message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
@@ -110,7 +116,7 @@ class Ending:
     def _not_finite(self, where: str) -> Outcome:
         """A value is not finite: the part's doing, unless something has grown before."""
         how = "is not finite"
-        if self._run.rows.are_sudden(self._done):
+        if self._run.rows.growth(self._done) is not None and not self._has_grown(AS_BEFORE):
             why = ", and nothing has grown before"
         elif self._done <= _BEGUN:
             why = (
@@ -121,6 +127,10 @@ class Ending:
             return self._diverged(where, how)
         message = f"{where} {how} at {self._reached:g} s{why}"
         return Outcome(OutcomeKind.PART_FAILED, self._reached, where, message)
+
+    def _has_grown(self, times: float) -> bool:
+        found = self._run.rows.growth(self._done)
+        return found is not None and found > times
 
     def _diverged(self, where: str, how: str) -> Outcome:
         """Values have grown until they are beyond all bounds."""

@@ -6,7 +6,7 @@ from herringbone.core import Outcome, OutcomeKind
 from herringbone.core.part import column
 from herringbone.core.run_table import KeptRows
 from herringbone.cosim.algorithms.prepared import PreparedRun
-from herringbone.cosim.divergence import first_nan, is_sudden
+from herringbone.cosim.divergence import first_nan, growth
 from herringbone.cosim.layouts.layout import record_names
 from herringbone.cosim.loops.common import BOUND
 from herringbone.cosim.other_signals import OtherSignals
@@ -62,17 +62,17 @@ class RunRows:
         """Unit of each column, "" if not declared."""
         return tuple(own_unit(v) for v in self.recorded)
 
-    def are_sudden(self, done: int) -> bool:
-        """True if the last of the rows has not grown: what comes next was no coupling's doing.
+    def growth(self, done: int) -> float | None:
+        """How much the rows have grown; None of too few, see `divergence.growth`.
 
         Raises HerringboneError if rows cannot be kept or read.
         """
         stream = self.stream
         if stream is None or self._keeps_all:
             rows = self.record.values[: self.record.complete(done)]
-            return is_sudden(lambda: [rows[:, self._taken]])
+            return growth(lambda: [rows[:, self._taken]])
         stream.flush(done)  # all rows of the run, those before it was resumed too
-        return is_sudden(lambda: (values[:, self._taken] for _, values in stream.sink.read()))
+        return growth(lambda: (values[:, self._taken] for _, values in stream.sink.read()))
 
     def first_nan(self, done: int) -> tuple[str, float] | None:
         """The first column that is no number in some row, and from when on [s]; None: none is."""

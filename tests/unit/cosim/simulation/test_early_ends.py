@@ -11,7 +11,7 @@ from support.parts.two_masses import TWO_MASS_SYSTEM, TwoMass
 from herringbone.core import OutcomeKind
 from herringbone.core.run_table import KeptRows
 from herringbone.cosim.algorithms import Jacobi
-from herringbone.cosim.divergence import is_sudden
+from herringbone.cosim.divergence import AS_BEFORE, growth
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid, simulate
 
@@ -91,10 +91,11 @@ def test_an_output_that_is_no_number_and_that_nothing_takes():
 def test_values_that_are_not_finite_after_growth():
     """The coupling may be to blame: rows that grow tenfold from the first half on tell so."""
     growing = np.exp(np.linspace(0.0, 2.0 * np.log(10.1), 21))[:, None] * np.ones(3)
-    assert not is_sudden(lambda: [growing])
-    assert not is_sudden(lambda: [growing[:4], growing[4:18], growing[18:], growing[:1] * np.nan])
-    assert is_sudden(lambda: [growing[:11]])
-    assert is_sudden(lambda: [growing[:3], growing[3:11]])
+    pieces = [growing[:4], growing[4:18], growing[18:], growing[:1] * np.nan]
+    assert growth(lambda: [growing]) == growth(lambda: pieces) == pytest.approx(10.1)
+    assert growth(lambda: [growing[:11]]) == growth(lambda: [growing[:3], growing[3:11]])
+    assert growth(lambda: [growing[:11]]) < AS_BEFORE < 10.1
+    assert growth(lambda: [growing[:7]]) is None
 
 
 class Folder:
