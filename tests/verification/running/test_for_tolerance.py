@@ -1,5 +1,6 @@
 """What a tolerance chooses: inner steps by closed forms, and work that follows it."""
 
+import math
 from dataclasses import replace
 from fractions import Fraction
 from types import SimpleNamespace
@@ -13,6 +14,7 @@ from herringbone.analysis.stability.recommendation import separation_step
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.running.coupling_choice import Asked
+from herringbone.running.operating.commanded import operated
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.steps.for_tolerance import by_default, for_tolerance
 from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps
@@ -115,6 +117,15 @@ def test_gear_pairs_may_take_longer_ones_up_to_what_is_stable(rig):
     by_name = with_inner_steps(rig.system.with_values({GEAR: 1e-6}), 1e-5).stepping
     kicked = with_inner_steps(rig.system, 1e-5, kicked=True).stepping
     assert (by_name[1:], kicked[1:]) == (({}, 1.0), ({}, 1.0))
+
+
+def test_inner_steps_follow_the_meshing():
+    """At 30000 r/min teeth mesh 13500 times a second; without, errors were 5 times the tolerance."""
+    wishes = operated("test_rig", "loaded", Wishes(), 3e4 * math.pi / 30.0, None)
+    fast = prepared("test_rig", "loaded", wishes).system
+    found = with_inner_steps(fast, 1e-3)
+    assert found.longest == pytest.approx(0.08 / 13500.0)
+    assert f"{GEAR} 5.93 us (as teeth mesh so fast)" in found.lines[0]
 
 
 def test_rotors_follow_the_gear_pairs_and_shafts_that_swing_do_not(rig):

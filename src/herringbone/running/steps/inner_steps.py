@@ -118,7 +118,7 @@ def _longer(system: System, found: _Chosen) -> tuple[Mapping[str, float], float]
 
     Tunable ones of other parts, which do not swing by themselves, follow if they may go as far.
     """
-    known = anatomy(system).with_role(Role.GEAR_PAIR)
+    known = _pairs(system)
     pairs = [path for part, path in _paths(system) if part in known]
     if not pairs or not found.most or not all(path in found.steps for path in pairs):
         return {}, 1.0
@@ -149,9 +149,13 @@ def _chosen(
     follows = _FOLLOWS / STABLE * (tolerance / RULE_ERROR) ** (1.0 / _ORDER)
     follows *= _SHOWN if _gears_are_recorded(system) else 1.0
     meshing = _meshing(system, tolerance)
-    stable = {path: min(longest, meshing) for path, longest in stable.items()}
     chosen = {
         path: min(wanted, min(follows, 1.0) * longest, meshing) for path, longest in stable.items()
+    }
+    pairs = {path for part, path in _paths(system) if part in _pairs(system)}
+    most = {
+        path: max(chosen[path], min(longest, meshing)) if path in pairs else longest
+        for path, longest in stable.items()
     }
     said = []
     for path, step in chosen.items():
@@ -160,12 +164,16 @@ def _chosen(
         reason = why if step == wanted else own
         said.append(f"{path} {1e6 * step:.3g} us" + f" ({reason})" * bool(reason))
     kept = part or _gears_are_recorded(system)
-    found_steps = _Chosen(chosen, {} if kept else stable, degree, ())
+    found_steps = _Chosen(chosen, {} if kept else most, degree, ())
     longer, times = _longer(system, found_steps)
     which = "" if len(longer) == len(chosen) else f"{', '.join(longer)} "
     more = f"; {which}up to {times:.3g} times longer where they err little"
     line = f"inner steps: {', '.join(said)}" + more * (times > 1.0)
     return found_steps._replace(lines=(line,) if said else ())
+
+
+def _pairs(system: System) -> tuple[str, ...]:
+    return anatomy(system).with_role(Role.GEAR_PAIR)
 
 
 def _meshing(system: System, tolerance: float) -> float:
