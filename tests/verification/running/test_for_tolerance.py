@@ -120,7 +120,7 @@ def test_gear_pairs_may_take_longer_ones_up_to_what_is_stable(rig):
 
 
 def test_inner_steps_follow_the_meshing():
-    """At 30000 r/min teeth mesh 13500 times a second; without, errors were 5 times the tolerance."""
+    """Teeth mesh 13500 times a second; without that, errors were five times the tolerance."""
     wishes = operated("test_rig", "loaded", Wishes(), 3e4 * math.pi / 30.0, None)
     fast = prepared("test_rig", "loaded", wishes).system
     found = with_inner_steps(fast, 1e-3)
