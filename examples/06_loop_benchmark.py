@@ -22,8 +22,7 @@ def compiled_loop(system: System, parts: list[Part], steps: int) -> float:
 
 def fmpy_loop(system: System, parts: list[Part], steps: int) -> float:
     """As one would write it with fmpy: setReal, doStep, getReal; time of a macro step [s]."""
-    compiled_loop(system, parts, 1)
-    return plain_loop(system, parts, steps - 1)
+    return plain_loop(system, parts, steps)
 
 
 def main(steps: int = 2000) -> float:

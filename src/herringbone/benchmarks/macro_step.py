@@ -19,7 +19,7 @@ from herringbone.core.part import Part
 from herringbone.core.places.part_path import flat_name
 from herringbone.cosim.fmu.fmi2_part import Fmu2Part
 from herringbone.cosim.layouts.layout import connected_outputs, record_names
-from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.simulation import make_grid, ready, simulate
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
@@ -118,7 +118,6 @@ def _fmpy(system: System, steps: int) -> float:
     """As one would write it with fmpy: setReal, doStep, getReal of all parts."""
     parts = open_parts(system, "native")
     try:
-        simulate(system, parts, PARALLEL, make_grid(STEP, STEP, STEP))
         return plain_loop(system, parts, steps)
     finally:
         for part in parts:
@@ -126,7 +125,8 @@ def _fmpy(system: System, steps: int) -> float:
 
 
 def plain_loop(system: System, parts: list[Part], steps: int) -> float:
-    """Go on from the first macro step of initialised FMUs; time of a macro step [s]."""
+    """Initialise FMUs, and take so many macro steps; time of one [s]."""
+    ready(system, parts, PARALLEL, make_grid(steps * STEP, STEP, STEP))
     network = build_network(system, parts)
     slaves = [part.slave for part in parts if isinstance(part, Fmu2Part)]
     wires = [network.inputs(p) for p in range(len(parts))]
@@ -137,7 +137,7 @@ def plain_loop(system: System, parts: list[Part], steps: int) -> float:
     values = [dict(zip(n, parts[p].get(n), strict=True)) for p, n in enumerate(names)]
     record = []
     begin = time.perf_counter()
-    for n in range(1, steps + 1):
+    for n in range(steps):
         for p, slave in enumerate(slaves):
             slave.setReal(ins[p], [values[s][name] for s, name in feeds[p]])
         for slave in slaves:

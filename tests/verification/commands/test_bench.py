@@ -22,15 +22,16 @@ pytestmark = needs_compiler
 FORCES = ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]
 LARGEST = 300_000
 """Bytes of an FMU with all platforms, its resources aside: the limit that the project sets."""
-BEYOND = {"gear_mesh": 330_000, "gearbox": 630_000, "test_rig": 656_000}
-"""What misses it, by 6 %, and twice: the law of single teeth takes 14 kB per platform, and the
+BEYOND = {"gear_mesh": 336_500, "gearbox": 637_500, "test_rig": 663_000}
+"""What misses it, by 12 %, and twice: the law of single teeth takes 14 kB per platform, and the
 slopes of an energy what systems missed it by before. Kernels that tell the motion alone take 3 to
 4 kB of systems per platform, and halve the time of their right-hand side. Bearings that may stand
 on rigid ground take 0.7 kB per platform, forces that are projected onto the modes once per step
 0.5 kB: the housing takes 0.6 of its time. The condensed core of whole systems takes 46 kB of them
 per platform, and makes them two to five times as fast: a third of it is its step, vectorised, a
 third what finds modes and makes matrices when parameters are known, the rest Runge-Kutta by a
-tolerance, beside that of a micro step, and constants."""
+tolerance, beside that of a micro step, and constants. Steps that leave all as it was if they fail,
+and directional derivatives of the start, take 1.4 kB per platform."""
 DRAWN = 4
 """Components whose FMUs are built for all platforms, and one system; all if EVERY_FMU is set."""
 
@@ -42,15 +43,11 @@ def test_the_plain_loop_ends_where_the_compiled_loop_ends():
     steps, ends = 40, []
     for plain in (True, False):
         parts = open_parts(system, "native")
-        first = 1 if plain else steps + 1
-        simulate(
-            system,
-            parts,
-            PARALLEL,
-            make_grid(first * macro_step.STEP, macro_step.STEP, macro_step.STEP),
-        )
         if plain:
             macro_step.plain_loop(system, parts, steps)
+        else:
+            step = macro_step.STEP
+            simulate(system, parts, PARALLEL, make_grid(steps * step, step, step))
         ends.append(parts[bearing].get(FORCES))
         for part in parts:
             part.close()

@@ -71,10 +71,11 @@ static void compute(Instance *instance) {
 static const double MOVED = 1e-4;
 
 static bool is_moved(uint32_t reference) {
+    if (!instance_is_real(reference))
+        return false;
     uint8_t access = hb_component.access[reference];
     bool parameter = access == HB_FIXED || access == HB_TUNABLE;
-    return is_known(reference) ||
-           (instance_is_real(reference) && parameter && !hb_component.reals[reference].whole);
+    return is_known(reference) || (parameter && !hb_component.reals[reference].whole);
 }
 
 /* Values of the unknowns where a known has another value. */
