@@ -73,6 +73,13 @@ def test_not_finite(motor, name, value):
     assert "it must be finite" in text
 
 
+def test_what_is_computed_is_not_set(motor):
+    """Of a run in one process nothing else would tell that the value is not used."""
+    assert (
+        message(motor, "flange.w", 50.0) == "motor.flange.w = 50.0: it is computed there, not set"
+    )
+
+
 def test_values_arrive_in_the_block(motor):
     for name, value in (("inertia", 0.5), ("speed", 3), ("flange.tau.node4", -2.0)):
         motor.set(name, value)

@@ -190,3 +190,13 @@ def test_only_double_helical_pairs_are_mounted():
 def test_negative_assumptions_are_refused(name):
     with pytest.raises(ParameterError, match=rf"\[mesh\] {name} = -1 must not be negative"):
         MeshAssumptions(**{name: -1.0})
+
+
+def test_iso_stiffness_does_not_depend_on_which_gear_is_named_first():
+    """ISO 6336-1 counts from the pinion, the smaller gear."""
+    plain = SHIFTED | {"groove_diameter": (0.08, 0.08), "shaft_diameter": (0.05, 0.05)}
+    turned = {name: plain[name][::-1] for name in ("number_of_teeth", "profile_shift_coefficient")}
+    pair, other = gear_pair(THESIS, **plain), gear_pair(THESIS, **plain | turned)
+    found, expected = other.iso6336_stiffness(), pair.iso6336_stiffness()
+    assert found.theoretical_single == expected.theoretical_single
+    assert found.mesh_alpha == pytest.approx(expected.mesh_alpha, rel=1e-12)

@@ -15,7 +15,7 @@ import pytest
 from support.studies import Cheap
 
 import herringbone as hb
-from herringbone.core import HerringboneError, ResourceError
+from herringbone.core import HerringboneError, ParameterError, ResourceError
 from herringbone.core.places.paths import module_path
 from herringbone.studies.expected import longest_period
 from herringbone.studies.working import processes
@@ -287,3 +287,12 @@ def test_several_gear_pairs_are_told_apart():
     found = hb.sweep("back_to_back", speed=[100.0], workers=1, evaluator=Cheap())
     assert found.of.startswith("mesh frequency and orders of first.gear_mesh, ")
     assert swept(torque=[1.0]).of == ""
+
+
+def test_a_variable_has_one_name_and_one_value():
+    """Rows would claim the values of the other name."""
+    damping, long = "gear_mesh.mesh_damping_ratio", "gearbox.gear_mesh.mesh_damping_ratio"
+    with pytest.raises(ParameterError, match="are the same variable; give one of them"):
+        hb.sweep("test_rig", vary={damping: [0.03, 0.05], long: [0.2, 0.3]})
+    with pytest.raises(ParameterError, match=f"{damping} is varied, and set besides"):
+        hb.sweep("test_rig", vary={damping: [0.03, 0.05]}, values={damping: 0.2})
