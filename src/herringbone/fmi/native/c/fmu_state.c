@@ -12,25 +12,21 @@ struct FmuState {
     double saved[];
 };
 
-static size_t previous_length(void) {
-    return hb_component.mutable_size - hb_component.first_output;
-}
-
 /* Of slopes and the block up to its tables. */
-static size_t present_length(const Instance *instance) {
-    return (size_t)(instance->block - instance->slopes) + hb_component.first_table;
+static size_t present_length(void) {
+    return instance_slopes_length() + hb_component.first_table;
 }
 
-static size_t saved_length(const Instance *instance) {
-    return previous_length() + present_length(instance);
+static size_t saved_length(void) {
+    return instance_previous_length() + present_length();
 }
 
-static size_t saved_size(const Instance *instance) {
-    return saved_length(instance) * sizeof(double);
+static size_t saved_size(void) {
+    return saved_length() * sizeof(double);
 }
 
 static FmuState *state_new(Instance *instance) {
-    FmuState *state = malloc(sizeof *state + saved_size(instance));
+    FmuState *state = malloc(sizeof *state + saved_size());
     if (!state)
         return NULL;
     state->texts = NULL;
@@ -68,9 +64,9 @@ Status instance_get_state(Instance *instance, void **handle) {
         state->texts = texts_share(instance->texts);
     }
     state->moment = instance->now;
-    memcpy(state->saved, instance->previous, previous_length() * sizeof(double));
-    memcpy(state->saved + previous_length(), instance->slopes,
-           present_length(instance) * sizeof(double));
+    memcpy(state->saved, instance->previous, instance_previous_length() * sizeof(double));
+    memcpy(state->saved + instance_previous_length(), instance->slopes,
+           present_length() * sizeof(double));
     *handle = state;
     return STATUS_OK;
 }
@@ -116,14 +112,14 @@ Status instance_set_state(Instance *instance, void *handle) {
         texts_release(instance->texts);
         instance->texts = texts_share(state->texts);
     }
-    size_t length = saved_length(instance);
+    size_t length = saved_length();
     size_t parameters = hb_component.first_table - hb_component.mutable_size;
     if (memcmp(state->saved + length - parameters, instance->block + hb_component.mutable_size,
                parameters * sizeof(double)) != 0)
         memset(instance->work, 0, hb_component.work * sizeof *instance->work);
-    memcpy(instance->previous, state->saved, previous_length() * sizeof(double));
-    memcpy(instance->slopes, state->saved + previous_length(),
-           present_length(instance) * sizeof(double));
+    memcpy(instance->previous, state->saved, instance_previous_length() * sizeof(double));
+    memcpy(instance->slopes, state->saved + instance_previous_length(),
+           present_length() * sizeof(double));
     if (hb_component.answer && instance->block[hb_component.stale] != 0.0)
         instance->block[hb_component.stale] = 2.0; /* what was asked for is another instance's */
     instance->now = state->moment;
@@ -166,17 +162,17 @@ static uint64_t checksum(const char *bytes, size_t size) {
     return hash;
 }
 
-static size_t serialised_size(const Instance *instance, const FmuState *state) {
+static size_t serialised_size(const FmuState *state) {
     size_t size = sizeof(Head) + strlen(hb_component.name) + strlen(hb_component.sources) + 2;
     for (uint32_t k = 0; k < hb_component.texts_count; k++)
         size += strlen(state->texts->values[k]) + 1;
-    return size + saved_size(instance);
+    return size + saved_size();
 }
 
 Status instance_serialised_size(Instance *instance, void *state, size_t *size) {
     if (!find(instance, state))
         return refuse_unknown(instance);
-    *size = serialised_size(instance, state);
+    *size = serialised_size(state);
     return STATUS_OK;
 }
 
@@ -190,16 +186,16 @@ Status instance_serialise(Instance *instance, void *handle, char bytes[], size_t
     const FmuState *state = handle;
     if (!find(instance, handle))
         return refuse_unknown(instance);
-    if (size != serialised_size(instance, state))
+    if (size != serialised_size(state))
         return instance_fail(instance, STATUS_ERROR,
                              "%s: %zu bytes for an FMU state of %zu bytes", instance->name, size,
-                             serialised_size(instance, state));
+                             serialised_size(state));
     Head head = {.moment = state->moment};
     memcpy(head.mark, MARK, sizeof head.mark);
     char *to = put(put(bytes + sizeof head, hb_component.name), hb_component.sources);
     for (uint32_t k = 0; k < hb_component.texts_count; k++)
         to = put(to, state->texts->values[k]);
-    memcpy(to, state->saved, saved_size(instance));
+    memcpy(to, state->saved, saved_size());
     memcpy(bytes, &head, sizeof head);
     head.checksum = checksum(bytes, size);
     memcpy(bytes, &head, sizeof head);
@@ -254,7 +250,7 @@ Status instance_deserialise(Instance *instance, const char bytes[], size_t size,
     if (strcmp(name, hb_component.name) != 0 || strcmp(sources, hb_component.sources) != 0)
         return refuse_owner(instance, name, sources);
     Texts *texts = head.checksum == checksum(bytes, size) ? take_texts(&at, end) : NULL;
-    if (!texts || (size_t)(end - at) != saved_size(instance)) {
+    if (!texts || (size_t)(end - at) != saved_size()) {
         texts_release(texts);
         return instance_fail(instance, STATUS_ERROR, "%s: the serialised FMU state is damaged",
                              instance->name);
@@ -272,7 +268,7 @@ Status instance_deserialise(Instance *instance, const char bytes[], size_t size,
     }
     state->texts = texts;
     state->moment = head.moment;
-    memcpy(state->saved, at, saved_size(instance));
+    memcpy(state->saved, at, saved_size());
     *handle = state;
     return STATUS_OK;
 }

@@ -33,30 +33,30 @@ Status instance_refuse(Instance *instance, const char *call) {
                          when[instance->now.phase]);
 }
 
-static size_t slopes_length(void) {
+size_t instance_slopes_length(void) {
     return (size_t)hb_component.inputs * HIGHEST_ORDER;
 }
 
-static size_t previous_length(void) {
+size_t instance_previous_length(void) {
     return hb_component.mutable_size - hb_component.first_output;
 }
 
 static bool allocate(Instance *instance) {
-    size_t length = 2 * (slopes_length() + previous_length()) + hb_component.size +
+    size_t length = 2 * (instance_slopes_length() + instance_previous_length()) + hb_component.size +
                     hb_component.work + hb_component.states + hb_component.indicators_count +
                     (JUMPS + 1) * hb_component.inputs + hb_component.first_output + 1;
     instance->slopes = calloc(length, sizeof(double));
     if (!instance->slopes)
         return false;
-    instance->block = instance->slopes + slopes_length();
+    instance->block = instance->slopes + instance_slopes_length();
     instance->work = instance->block + hb_component.size;
     instance->rates = instance->work + hb_component.work;
     instance->indicators = instance->rates + hb_component.states;
     instance->ahead = instance->indicators + hb_component.indicators_count;
     instance->jumps = instance->ahead + hb_component.inputs;
     instance->previous = instance->jumps + JUMPS * hb_component.inputs;
-    instance->older = instance->previous + previous_length();
-    instance->before = instance->older + previous_length();
+    instance->older = instance->previous + instance_previous_length();
+    instance->before = instance->older + instance_previous_length();
     return true;
 }
 
@@ -67,9 +67,9 @@ static bool start(Instance *instance) {
         return false;
     texts_release(instance->texts);
     instance->texts = texts;
-    memset(instance->previous, 0, previous_length() * sizeof *instance->previous);
+    memset(instance->previous, 0, instance_previous_length() * sizeof *instance->previous);
     memset(instance->slopes, 0,
-           (slopes_length() + hb_component.size + hb_component.work) * sizeof *instance->slopes);
+           (instance_slopes_length() + hb_component.size + hb_component.work) * sizeof *instance->slopes);
     for (uint32_t i = 0; i < hb_component.first_table; i++)
         instance->block[i] = hb_component.reals[i].start;
     instance->now = (Moment){.phase = PHASE_INSTANTIATED, .stop = INFINITY};

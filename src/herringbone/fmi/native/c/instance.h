@@ -85,6 +85,9 @@ struct Instance {
 Instance *instance_new(const char *name, const char *token, const char *resources,
                        bool model_exchange, const Log *log);
 void instance_free(Instance *instance);
+/* Lengths of `slopes` and `previous`. */
+size_t instance_slopes_length(void);
+size_t instance_previous_length(void);
 Status instance_reset(Instance *instance);
 Status instance_terminate(Instance *instance);
 Status instance_set_logging(Instance *instance, bool on, size_t count,

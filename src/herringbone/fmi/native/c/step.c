@@ -112,22 +112,20 @@ static Status refuse_two_signals(Instance *instance) {
 }
 
 static void keep(Instance *instance) {
-    size_t slopes = (size_t)(instance->block - instance->slopes);
     memcpy(instance->before, instance->block, hb_component.first_output * sizeof(double));
     if (instance->now.input_order)
         memcpy(instance->before + hb_component.first_output, instance->slopes,
-               slopes * sizeof(double));
+               instance_slopes_length() * sizeof(double));
     instance_keep_outputs(instance);
 }
 
 /* As before the step, whose start is the last time that was reached. */
 static void go_back(Instance *instance, const Moment *then) {
-    size_t slopes = (size_t)(instance->block - instance->slopes);
     instance->now = *then;
     memcpy(instance->block, instance->before, hb_component.first_output * sizeof(double));
     if (then->input_order)
         memcpy(instance->slopes, instance->before + hb_component.first_output,
-               slopes * sizeof(double));
+               instance_slopes_length() * sizeof(double));
     instance_restore_outputs(instance);
     if (hb_component.watch)
         hb_component.watch->take_back(instance);

@@ -70,12 +70,14 @@ static void compute(Instance *instance) {
    Optimization, 1996, section 5.6); a start is found to some 1e-10, so that it is longer here. */
 static const double MOVED = 1e-4;
 
+static bool is_parameter(uint32_t reference) {
+    return hb_component.access[reference] == HB_FIXED ||
+           hb_component.access[reference] == HB_TUNABLE;
+}
+
 static bool is_moved(uint32_t reference) {
-    if (!instance_is_real(reference))
-        return false;
-    uint8_t access = hb_component.access[reference];
-    bool parameter = access == HB_FIXED || access == HB_TUNABLE;
-    return is_known(reference) || (parameter && !hb_component.reals[reference].whole);
+    return is_known(reference) || (instance_is_real(reference) && is_parameter(reference) &&
+                                   !hb_component.reals[reference].whole);
 }
 
 /* Values of the unknowns where a known has another value. */
@@ -91,8 +93,7 @@ static Status add_difference(Instance *instance, uint32_t known, double seed,
                              const uint32_t unknowns[], size_t count, double both[],
                              double sensitivity[]) {
     const HbReal *real = &hb_component.reals[known];
-    bool bounded = hb_component.access[known] == HB_FIXED ||
-                   hb_component.access[known] == HB_TUNABLE;
+    bool bounded = is_parameter(known);
     double value = instance->block[known], size = value != 0.0 ? fabs(value) : real->nominal;
     double low = value - MOVED * size, high = value + MOVED * size;
     if (bounded && low < real->minimum)
