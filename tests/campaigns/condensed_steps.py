@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 from fuzz.campaign import last_commit
 from support.gearing.own_pair import write_pair
+from support.rig.as_one import instance_of
 
 from campaigns.plans import tell
 from herringbone.analysis.accuracy.apart import differences
@@ -25,7 +26,6 @@ from herringbone.analysis.twin.block_core.steps import TOLERANCE
 from herringbone.analysis.twin.composite import make_composite
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.analysis.twin.monolithic import Twin
-from herringbone.core import Instance
 from herringbone.cosim.structure.system import System
 from herringbone.running.prepared import Wishes, prepared
 
@@ -59,10 +59,7 @@ class Box:
 
     def __init__(self, system: System, folder: Path, like: "Box | None" = None) -> None:
         composite = make_composite(system)
-        for name, file in composite.resources.items():
-            (folder / name).parent.mkdir(exist_ok=True)
-            (folder / name).write_bytes(file.read_bytes())
-        self.instance = Instance(composite.component, "box", folder)
+        self.instance = instance_of(composite, folder, "box")
         self.instance.initialise()
         self.kernel = like.kernel if like else composite.component.kernels.step
         self.index = composite.component.declaration.index

@@ -9,9 +9,8 @@ from fmpy import read_model_description
 from fmpy.fmi1 import FMICallException
 from support.compiler import needs_compiler
 from support.hosts.fmi2 import Fmi2Host
-from support.rig.as_one import rig_as_one
+from support.rig.as_one import instance_of, rig_as_one
 
-from herringbone.core import Instance
 from herringbone.running.exporting.system_fmu import export_fmu
 
 STIFFNESS = "gearbox.bearing_supports.pinion.radial_stiffness"
@@ -39,10 +38,7 @@ def run(host, count, names, time=0.0):
 def test_native_bits_are_those_of_python(rig, tmp_path):
     """With steps of any length, a tolerance, and parameters that are not those of the export."""
     composite = rig_as_one()
-    for name, file in composite.resources.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_bytes(file.read_bytes())
-    python = Instance(composite.component, "rig", tmp_path)
+    python = instance_of(composite, tmp_path, "rig")
     d = composite.component.declaration
     python.set(STIFFNESS, 1e8)
     python.initialise()

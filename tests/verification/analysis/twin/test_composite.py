@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 import pytest
-from support.rig.as_one import rig_as_one
+from support.rig.as_one import instance_of, rig_as_one
 
 from herringbone.analysis.twin.composite import Composite, make_composite
 from herringbone.analysis.twin.monolithic import Twin
@@ -21,10 +21,7 @@ SEATS_OUTSIDE = ("modal_housing",)
 
 
 def _instance(composite: Composite, tmp_path) -> Instance:
-    for name, file in composite.resources.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_bytes(file.read_bytes())
-    instance = Instance(composite.component, "system", tmp_path)
+    instance = instance_of(composite, tmp_path)
     instance.initialise()
     return instance
 
@@ -189,12 +186,7 @@ def test_an_unbalance_that_is_set_is_seen(tmp_path):
     names = [v.name for v in d.outputs if "shaft." in v.name and v.name.endswith((".f_y", ".f_z"))]
     places, rows = [d.index[n] for n in names], []
     for k, own in enumerate(({}, {"micro_step": 1e-6})):
-        folder = tmp_path / str(k)
-        folder.mkdir()
-        for name, file in composite.resources.items():
-            (folder / name).parent.mkdir(exist_ok=True)
-            (folder / name).write_bytes(file.read_bytes())
-        whole = Instance(composite.component, "system", folder)
+        whole = instance_of(composite, tmp_path / str(k))
         for name, value in {"gear_mesh.wheel.unbalance": 0.1, **own}.items():
             whole.set(name, value)
         whole.initialise()

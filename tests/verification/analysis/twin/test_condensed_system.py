@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 from campaigns.condensed_steps import Box
 from fuzz.campaign import last_commit
-from support.rig.as_one import rig_as_one
+from support.rig.as_one import instance_of, rig_as_one
 
 from herringbone.analysis.twin.block_core.steps import TOLERANCE
 from herringbone.analysis.twin.composite import MICRO_STEP, make_composite
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.resources.loader import REPORT
-from herringbone.core import Instance
 from herringbone.core.declaring.hosting import HOLDS_NOW
 from herringbone.running.prepared import Wishes, prepared
 
@@ -48,10 +47,7 @@ class Rig:
     def __init__(self, folder, values=None, scene="loaded"):
         self.system = prepared("test_rig", scene, Wishes(values=values or {})).system
         composite = make_composite(self.system)
-        for name, file in composite.resources.items():
-            (folder / name).parent.mkdir(exist_ok=True)
-            (folder / name).write_bytes(file.read_bytes())
-        self.instance = Instance(composite.component, "rig", folder)
+        self.instance = instance_of(composite, folder, "rig")
         self.instance.initialise()
         self.kernel = rig_as_one().component.kernels.step
         self.declaration = composite.component.declaration

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.rig.as_one import instance_of
 
 import herringbone as hb
 from herringbone.analysis.twin.composite import make_composite
-from herringbone.core import Instance
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.commanded import operated
 from herringbone.running.prepared import Wishes, prepared
@@ -43,10 +43,7 @@ def test_a_short_contact_in_a_system_as_one_component(tmp_path):
     scene = replace(load_scene(folder, "separation"), start_offset=offset)
     asked = operated("test_rig", scene, Wishes(), None, 25.0)
     composite = make_composite(prepared("test_rig", scene, asked).system)
-    for name, file in composite.resources.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_bytes(file.read_bytes())
-    whole, d = Instance(composite.component, "rig", tmp_path), composite.component.declaration
+    whole, d = instance_of(composite, tmp_path, "rig"), composite.component.declaration
     whole.initialise()
     whole.block[d.index["tolerance"]] = 1e-3
     true = hb.run(
