@@ -1,17 +1,22 @@
 """What speed and torque address: the set points that a system declares."""
 
+import math
 from typing import NamedTuple
 
-from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.components.registry import component
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaring.roles import GEARS, PortKind, Quantity, Role
+from herringbone.core.declaring.units import R_MIN
 from herringbone.core.declaring.variable import Causality
 from herringbone.core.wording import setting, settings
 from herringbone.cosim.structure.system import System
 
 SPEED, TORQUE = "speed", "torque"
 QUANTITIES = {SPEED: Quantity.SPEED_SETPOINT, TORQUE: Quantity.TORQUE_SETPOINT}
+_FASTEST = 1e6
+"""Mesh frequency [Hz] beyond which no body of a tooth is left that could be elastic: in a period
+sound in steel goes 5 mm."""
 
 
 class SetPoint(NamedTuple):
@@ -128,6 +133,31 @@ def speed_of(system: System, pair: str) -> str:
     declaration = component(str(system.part(pair).component)).declaration
     turning = next(v.name for v in declaration.states if v.steady == "rotating")
     return f"{pair}.der({turning})"
+
+
+def check_speed(speed: float, teeth: float) -> None:
+    """Refuse a speed at which teeth cannot mesh.
+
+    Args:
+        speed: [rad/s].
+        teeth: how many of them mesh in a turn at that speed.
+
+    Raises:
+        ParameterError: it is too high.
+    """
+    most = 2.0 * math.pi * _FASTEST / teeth
+    if abs(speed) > most:
+        raise ParameterError(
+            f"speed = {speed:g} rad/s ({speed * R_MIN:g} r/min): at most {most:.4g} rad/s "
+            f"({most * R_MIN:.4g} r/min), where teeth mesh {_FASTEST:g} times a second and sound "
+            "goes through a tooth but once; ask for a lower speed"
+        )
+
+
+def pinion_teeth(system: System, pair: str) -> float | None:
+    """Number of teeth of a gear pair's pinion; None of a foreign one, or if it tells none."""
+    column = anatomy(system).column(pair, Quantity.NUMBER_OF_TEETH, GEARS[0])
+    return value_at(system, column) if column and not system.part(pair).foreign else None
 
 
 def _drives(name: str) -> bool:

@@ -20,7 +20,6 @@ _PROBLEMS = {
 }
 _BEGUN = 8
 """Macro steps of which nobody can say whether something has grown."""
-
 _GROWN = 1e6
 """Growth by which a part's refusal is the coupling's doing: one that goes back from the step shows
 no value that is not finite."""
@@ -106,7 +105,7 @@ class Ending:
         where, value = diverged(run.network, culprit)
         if where and not math.isfinite(value):
             return self._not_finite(where)
-        if status == PART_FAILED and not where and self._has_grown(_GROWN):
+        if status == PART_FAILED and not where and (run.rows.growth(self._done) or 0.0) > _GROWN:
             where = part.name
         if status == NOT_FINITE or where:
             return self._diverged(where or part.name, "grows beyond all bounds")
@@ -116,7 +115,8 @@ class Ending:
     def _not_finite(self, where: str) -> Outcome:
         """A value is not finite: the part's doing, unless something has grown before."""
         how = "is not finite"
-        if self._run.rows.growth(self._done) is not None and not self._has_grown(AS_BEFORE):
+        grown = self._run.rows.growth(self._done)
+        if grown is not None and grown <= AS_BEFORE:
             why = ", and nothing has grown before"
         elif self._done <= _BEGUN:
             why = (
@@ -127,10 +127,6 @@ class Ending:
             return self._diverged(where, how)
         message = f"{where} {how} at {self._reached:g} s{why}"
         return Outcome(OutcomeKind.PART_FAILED, self._reached, where, message)
-
-    def _has_grown(self, times: float) -> bool:
-        found = self._run.rows.growth(self._done)
-        return found is not None and found > times
 
     def _diverged(self, where: str, how: str) -> Outcome:
         """Values have grown until they are beyond all bounds."""

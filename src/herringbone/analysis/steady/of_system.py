@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from herringbone.analysis.rigid_rotation import names_of_states
-from herringbone.analysis.steady.harmonic_balance.problem import STILL, Problem, Samples
+from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples, still
 from herringbone.analysis.steady_search import scales
 from herringbone.analysis.twin.condensed.equations import laws_of, settle_laws
 from herringbone.analysis.twin.condensed.laws import laws_along
@@ -96,8 +96,7 @@ def _refuse_neutral(system: Condensed) -> None:
     if not modes.angles.size:
         return
     turns = np.abs(modes.turns[0])
-    still = np.abs(modes.rates) <= STILL * np.abs(modes.rates).max(initial=0.0)
-    neutral = np.flatnonzero(still & (turns > 0.0) & (turns <= _NONE * turns.max()))
+    neutral = np.flatnonzero(still(modes.rates) & (turns > 0.0) & (turns <= _NONE * turns.max()))
     if neutral.size:
         shape = np.abs(modes.shapes[:, neutral[0]]) / scales(system.twin)
         name = names_of_states(system.twin)[int(np.argmax(shape))]

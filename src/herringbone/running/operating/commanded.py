@@ -8,11 +8,18 @@ from numbers import Real
 from pathlib import Path
 
 from herringbone.analysis.anatomy import anatomy, value_at
-from herringbone.analysis.fastest import check_speed
-from herringbone.analysis.set_points import QUANTITIES, SPEED, TORQUE, at_pinion, set_point
+from herringbone.analysis.set_points import (
+    QUANTITIES,
+    SPEED,
+    TORQUE,
+    at_pinion,
+    check_speed,
+    pinion_teeth,
+    set_point,
+)
 from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, ParameterError
-from herringbone.core.declaring.roles import GEARS, Quantity, Role
+from herringbone.core.declaring.roles import Role
 from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system import System
 from herringbone.running.fitted import housings_of
@@ -102,11 +109,9 @@ def operated(
 
 def _check_speed(system: System, speed: float) -> None:
     """Raise ParameterError if the teeth of the first pair could not mesh so fast."""
-    known = anatomy(system)
-    for pair in known.with_role(Role.GEAR_PAIR)[:1]:
-        column = known.column(pair, Quantity.NUMBER_OF_TEETH, GEARS[0])
-        if column and not system.part(pair).foreign:
-            check_speed(speed, value_at(system, column))
+    for pair in anatomy(system).with_role(Role.GEAR_PAIR)[:1]:
+        if teeth := pinion_teeth(system, pair):
+            check_speed(speed, teeth)
 
 
 def _values(system: System, name: str, value: float) -> dict[str, float]:

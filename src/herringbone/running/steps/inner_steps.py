@@ -15,13 +15,13 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from herringbone.analysis.anatomy import anatomy, value_at
-from herringbone.analysis.set_points import speed_of
+from herringbone.analysis.set_points import pinion_teeth, speed_of
 from herringbone.analysis.stability.bonds import highest_frequency
 from herringbone.analysis.stability.recommendation import RULE_ERROR, separation_step
 from herringbone.components.registry import component
 from herringbone.core import Instance
 from herringbone.core.caching.remembered import Remembered
-from herringbone.core.declaring.roles import GEARS, Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.declaring.variable import Causality, Variability, Variable
 from herringbone.core.places.part_path import PartPath, in_groups
 from herringbone.cosim.algorithms import LI
@@ -118,8 +118,7 @@ def _longer(system: System, found: _Chosen) -> tuple[Mapping[str, float], float]
 
     Tunable ones of other parts, which do not swing by themselves, follow if they may go as far.
     """
-    known = _pairs(system)
-    pairs = [path for part, path in _paths(system) if part in known]
+    pairs = _paths_of_pairs(system)
     if not pairs or not found.most or not all(path in found.steps for path in pairs):
         return {}, 1.0
     times = {path: found.most[path] / step for path, step in found.steps.items()}
@@ -152,7 +151,7 @@ def _chosen(
     chosen = {
         path: min(wanted, min(follows, 1.0) * longest, meshing) for path, longest in stable.items()
     }
-    pairs = {path for part, path in _paths(system) if part in _pairs(system)}
+    pairs = _paths_of_pairs(system)
     most = {
         path: max(chosen[path], min(longest, meshing)) if path in pairs else longest
         for path, longest in stable.items()
@@ -172,18 +171,19 @@ def _chosen(
     return found_steps._replace(lines=(line,) if said else ())
 
 
-def _pairs(system: System) -> tuple[str, ...]:
-    return anatomy(system).with_role(Role.GEAR_PAIR)
+def _paths_of_pairs(system: System) -> list[str]:
+    """Inner steps of own gear pairs."""
+    known = anatomy(system).with_role(Role.GEAR_PAIR)
+    return [path for part, path in _paths(system) if part in known]
 
 
 def _meshing(system: System, tolerance: float) -> float:
     """The longest step [s] that follows what meshing excites at the start's speeds."""
-    known, fastest = anatomy(system), 0.0
-    for pair in known.with_role(Role.GEAR_PAIR):
-        teeth = known.column(pair, Quantity.NUMBER_OF_TEETH, GEARS[0])
-        if teeth and not system.part(pair).foreign:
+    fastest = 0.0
+    for pair in anatomy(system).with_role(Role.GEAR_PAIR):
+        if teeth := pinion_teeth(system, pair):
             turns = value_at(system, speed_of(system, pair)) / (2.0 * math.pi)
-            fastest = max(fastest, abs(turns) * value_at(system, teeth))
+            fastest = max(fastest, abs(turns) * teeth)
     share = _MESHES * (tolerance / RULE_ERROR) ** (1.0 / _ORDER)
     return share / fastest if fastest else math.inf
 

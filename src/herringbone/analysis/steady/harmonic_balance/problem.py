@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-STILL = 1e-9
+_STILL = 1e-9
 """Rate of a mode, over the largest one, that is none."""
 
 
@@ -119,6 +119,12 @@ class Problem:
     @cached_property
     def free(self) -> int | None:
         """The mode that turns at any speed by itself; None: something decides on the speed."""
-        still = np.abs(self.rates) <= STILL * np.abs(self.rates).max(initial=0.0)
-        turning = np.flatnonzero(still & (self.turns != 0.0))
+        turning = np.flatnonzero(still(self.rates) & (self.turns != 0.0))
         return int(turning[0]) if turning.size else None
+
+
+def still(rates: np.ndarray) -> np.ndarray:
+    """(modes,) True of those that neither decay nor vibrate."""
+    sizes = np.abs(rates)
+    found: np.ndarray = sizes <= _STILL * sizes.max(initial=0.0)
+    return found

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.fastest import check_speed
+from herringbone.analysis.set_points import check_speed
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.fourier import on
 from herringbone.analysis.steady.harmonic_balance.lattice import lines_between
