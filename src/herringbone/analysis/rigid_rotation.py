@@ -40,6 +40,45 @@ def rigid_rotation(twin: Twin, x: np.ndarray) -> np.ndarray:
         twin: the system.
         x: states (n,) about which it is asked; kinematics do not depend on them.
     """
+    velocities, slopes = _relative_motion(twin, x)
+    found = np.zeros_like(x)
+    if not velocities.size:
+        return found
+    free = _free(slopes)
+    if len(free) == 1:
+        shares = free[0] / free[0][np.argmax(np.abs(free[0]))]
+        # Of shafts that are equally fast the first is the fastest, whatever rounding says.
+        as_fast = np.abs(np.abs(shares) - 1.0) < _NOTHING
+        shares = np.where(as_fast, np.sign(shares), shares)
+        found[velocities] = np.where(np.abs(free[0]) > _NOTHING, shares, 0.0)
+    return found
+
+
+def opposed_speed(twin: Twin, x: np.ndarray, output: str) -> float | None:
+    """What an output is where all else turns rigidly by 1 rad/s of the fastest shaft.
+
+    Args:
+        twin: the system.
+        x: states (n,) about which it is asked.
+        output: one that vanishes in steady rotation.
+
+    Returns:
+        None if the drivetrain can turn with it, or cannot turn without it either.
+    """
+    zero = steady_rows(twin)[1]
+    velocities, slopes = _relative_motion(twin, x)
+    if output not in zero or not velocities.size or len(_free(slopes)):
+        return None
+    row = len(slopes) - len(zero) + zero.index(output)
+    free = _free(np.delete(slopes, row, axis=0))
+    return float(slopes[row] @ free[0] / np.abs(free[0]).max()) if len(free) == 1 else None
+
+
+def _relative_motion(twin: Twin, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Velocities (places among the states), and what they change (rows, velocities).
+
+    Rows are the rates of relative positions and, last, outputs that vanish in steady rotation.
+    """
     units = units_of_states(twin)
     velocities = np.flatnonzero(np.isin(units, list(_VELOCITIES)))
     rotating, zero = steady_rows(twin)
@@ -56,15 +95,13 @@ def rigid_rotation(twin: Twin, x: np.ndarray) -> np.ndarray:
         moved = x.copy()
         moved[i] += 1.0
         columns.append(rates(moved) - base)
-    found = np.zeros_like(x)
-    if not columns:
-        return found
-    _, sizes, directions = np.linalg.svd(np.array(columns).T)
-    free = directions[np.count_nonzero(sizes > _NOTHING * sizes.max(initial=0.0)) :]
-    if len(free) == 1:
-        largest = free[0][np.argmax(np.abs(free[0]))]
-        found[velocities] = np.where(np.abs(free[0]) > _NOTHING, free[0] / largest, 0.0)
-    return found
+    return velocities, np.array(columns).T
+
+
+def _free(slopes: np.ndarray) -> np.ndarray:
+    """Directions (k, velocities) that change nothing."""
+    _, sizes, directions = np.linalg.svd(slopes)
+    return directions[np.count_nonzero(sizes > _NOTHING * sizes.max(initial=0.0)) :]
 
 
 def units_of_states(twin: Twin) -> np.ndarray:

@@ -7,7 +7,12 @@ that the system of equations has a null space.
 import numpy as np
 
 from herringbone.analysis.answered import Answered
-from herringbone.analysis.rigid_rotation import names_of_states, steady_rows, units_of_states
+from herringbone.analysis.rigid_rotation import (
+    names_of_states,
+    opposed_speed,
+    steady_rows,
+    units_of_states,
+)
 from herringbone.analysis.slopes import slopes
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.registry import component
@@ -93,9 +98,22 @@ def steady_rotation(
     names = [f"the rate of {name}" for name in names_of_states(twin)]
     worst = [*(names[k] for k in keep), *zero][int(np.argmax(np.abs(r / rows)))]
     raise EquilibriumError(
-        f"no steady rotation of '{system.name}' was found in {iteration + 1} iterations: {worst} "
-        f"does not vanish; look for {_nothing_carries(system)}a load there that nothing balances "
-        f"or that is beyond what drives, or start a run with {option('start', 'rest')}"
+        f"no steady rotation of '{system.name}' was found in {iteration + 1} iterations: "
+        + _why(system, twin, x[:count], worst)
+    )
+
+
+def _why(system: System, twin: Twin, x: np.ndarray, worst: str) -> str:
+    """The reason for which something does not vanish in steady rotation, and what to look for."""
+    if (share := opposed_speed(twin, x, worst)) is not None:
+        return (
+            f"its shafts cannot turn together: {worst} is {abs(share):.3g} rad/s where all else "
+            "turns, the fastest shaft by 1 rad/s; look for ratios around a closed loop that do not "
+            "make 1, or for a shaft that is held"
+        )
+    return (
+        f"{worst} does not vanish; look for {_nothing_carries(system)}a load there that nothing "
+        f"balances or that is beyond what drives, or start a run with {option('start', 'rest')}"
     )
 
 

@@ -222,7 +222,7 @@ def test_a_quarter_of_real_time(speed, torque, exported, tmp_path):
     host = Fmi2Host(exported(0), tmp_path, values=values)
     least = np.full(100, np.inf)
     settled = least[20:]
-    for _ in range(25):
+    for _ in range(400):
         host.slave.reset()
         host.initialise(values=values)
         for k in range(least.size):

@@ -24,9 +24,13 @@ from herringbone.kernels.steppers import Rhs
 from herringbone.kernels.stepping.local_error import Slots, error_measure, factor
 
 TOO_SMALL = 3
-"""Status of a step in which the tolerance asked for inner steps below SMALLEST."""
-SMALLEST = 1e-13
-"""Length of the smallest inner step [s]."""
+"""Status of a step in which the tolerance asked for inner steps that are too small."""
+_SMALLEST, _BY_TOLERANCE = 1e-10, 1e-3
+"""Length of the smallest inner step [s]; at small tolerances, over these: what teeth that meet ask
+for is smaller then."""
+_MOST, _MEAN = 20_000, 1e-8
+"""Steps between two ends, and their mean length [s] where there are more: fewer and longer ones do
+for any gearbox, not for what has grown until it is none any more."""
 _BENT = 6.0
 """Of the longest step, and the root of the tolerance: steps in which a law bends, unseen by the
 estimate; what a step errs there grows with the square of its length."""
@@ -106,12 +110,17 @@ def explicit_stepper(
         """Integrate from t + begin to t + end, inside the macro step, in steps up to `most` [s]."""
         done, row, follows, doubtful = begin, 0, tolerance < np.inf, False
         within = share * tolerance
+        smallest = min(_SMALLEST, _BY_TOLERANCE * tolerance)
+        left_over = _MOST + (end - begin) / _MEAN
         while done < end:
             if done == begin:
                 enter(b, w, t, h, begin, degree)
                 if follows:
                     bent(b, w, t + begin, row)
             left, judged, hides = end - done, doubtful, False
+            left_over -= 1.0
+            if follows and left_over < 0.0:
+                return TOO_SMALL
             count = max(1.0, math.ceil(left / min(b[following], most) - 1e-9))
             hs = left / count
             runge_kutta(b, w, t + done, hs, degree, done / h, hs / h)
@@ -137,7 +146,7 @@ def explicit_stepper(
             if judged:
                 done, row, w[known], doubtful = begin, 0, 0.0, False
             b[following] = ahead
-            if ahead < SMALLEST:
+            if ahead < smallest:
                 return TOO_SMALL
         return 0
 

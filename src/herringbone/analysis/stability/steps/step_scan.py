@@ -2,11 +2,11 @@
 
 Stability is not monotone in the step, so that a bisection alone would jump over bands. A coarse
 scan finds an unstable step; a fine one goes from a quarter of it to twice of it, in longer steps
-where motions grow clearly, or until nothing has been stable for long. Close to the first unstable
-step, where a run is most likely to be asked for, steps follow each other as closely as motions that
-come to half the rate of communication points ask for (below): so a band in which one of them meets
-its mirror image, or another one's, is seen however narrow it is, down to 0.5 %. Edges of bands are
-refined by bisection.
+where motions grow clearly or none is near half the rate of communication points, or until nothing
+has been stable for long. Close to the first unstable step, where a run is most likely to be asked
+for, steps follow each other as closely as motions that come to half the rate ask for (below): so a
+band in which one of them meets its mirror image, or another one's, is seen however narrow it is,
+down to 0.5 %. Edges of bands are refined by bisection.
 
 Narrow bands open where two motions meet on the unit circle, above all where a motion at half the
 rate of communication points meets its own mirror image. With the decay d per step of the motion
@@ -30,6 +30,9 @@ SMALLEST_STEP, LARGEST_STEP = 1e-6, 2e-3
 """Range of the scan [s]."""
 COARSE, _FINE = 1.25, 1.025
 """Factors between steps of the scans."""
+_WIDEST = 1.08
+"""Factor of the fine scan where no motion is near half the rate; less than `NEAR_MIRROR`, within
+which such motions are looked for."""
 _BELOW, _ABOVE = 0.25, 2.0
 _GROWING, _FINER_NO_MORE = 1.001, 1.05
 """Growth beyond which a scan looks for stable steps above a band, and its factor there."""
@@ -134,7 +137,10 @@ def _find_unstable(
 
 
 def _samples(growth: GrowthOf, first: float, end: float) -> list[tuple[float, Growth]]:
-    """Growth on the fine grid; it ends early where nothing has been stable for long."""
+    """Growth on the fine grid, which is wider where no motion comes to half the rate.
+
+    It ends early where nothing has been stable for long.
+    """
     found: list[tuple[float, Growth]] = []
     step, since = first, np.inf
     while step <= end:
@@ -143,7 +149,7 @@ def _samples(growth: GrowthOf, first: float, end: float) -> list[tuple[float, Gr
         since = min(since, step) if _grows(value) else np.inf
         if value.radius > _CLEARLY and step > _FOR_LONG * since:
             break
-        step *= _FINER_NO_MORE if value.radius > _GROWING else _FINE
+        step *= _FINER_NO_MORE if value.radius > _GROWING else _apart(value, _FINE, _WIDEST)
     return found
 
 
@@ -162,15 +168,15 @@ def _along(
     found = [(low, safe_growth(growth, low))]
     while found[-1][0] < high and (beyond or not _grows(found[-1][1])):
         step, value = found[-1]
-        step = min(step * _apart(value), high)
+        step = min(step * _apart(value, _RESOLUTION, _FINE), high)
         found.append((step, safe_growth(growth, step)))
     return _with_maxima(growth, found)
 
 
-def _apart(value: Growth) -> float:
-    """Factor to the next step: half of that over which two motions stay together."""
+def _apart(value: Growth, least: float, most: float) -> float:
+    """Factor to the next step: half of that over which two motions stay together, within bounds."""
     decay = max(0.0, 1.0 - value.near_mirror)
-    return float(np.clip(1.0 + decay / np.pi, _RESOLUTION, _FINE))
+    return float(np.clip(1.0 + decay / np.pi, least, most))
 
 
 def _step(sample: tuple[float, Growth]) -> float:
