@@ -73,6 +73,26 @@ def _runge_kutta(
     return runge_kutta
 
 
+def _enterer(
+    rhs: Rhs, declaration: Declaration, slots: Slots, set_inputs: Callable, go_on: Callable
+) -> Callable:
+    """Compile enter(b, w, t, h, begin, degree), before the first step from t + begin on."""
+    n, start, known = declaration.state_count, slots.start, slots.known
+
+    @inner(declaration.name)
+    def enter(b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, degree: int) -> None:
+        """Find the rates at the start, if they are not known: no step lies before."""
+        if w[known] == 0.0:
+            set_inputs(b, w, degree, begin / h)
+            rhs(b, t + begin, w[:n])
+            go_on(w, 0.0, False)
+            w[known] = 1.0
+            for i in range(n):
+                w[start + i] = b[i]
+
+    return enter
+
+
 def explicit_stepper(
     rhs: Rhs,
     declaration: Declaration,
@@ -90,17 +110,7 @@ def explicit_stepper(
     x0, start, length, known = slots.x0, slots.start, slots.length, slots.known
     error_of, go_on = error_measure(declaration, slots)
     runge_kutta = _runge_kutta(rhs, declaration, slots, set_inputs)
-
-    @inner(declaration.name)
-    def enter(b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, degree: int) -> None:
-        """Find the rates at the start, if they are not known: no step lies before."""
-        if w[known] == 0.0:
-            set_inputs(b, w, degree, begin / h)
-            rhs(b, t + begin, w[:n])
-            go_on(w, 0.0, False)
-            w[known] = 1.0
-            for i in range(n):
-                w[start + i] = b[i]
+    enter = _enterer(rhs, declaration, slots, set_inputs, go_on)
 
     @inner(declaration.name)
     def explicit(
