@@ -7,6 +7,7 @@ from herringbone.core.declaring.declaration import Declaration
 from herringbone.core.declaring.variable import local, parameter, state
 from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.stepping.adaptive import adaptive_stepper, adaptive_work
+from herringbone.kernels.stepping.explicit import TOO_SMALL
 
 PATH = Declaration(
     "path",
@@ -16,9 +17,10 @@ PATH = Declaration(
         local("next_inner_step", "s", "next inner step"),
         parameter("knot", "s", "time at which the speed begins to bend", 0.0),
         parameter("jump", "1", "of the speed's curvature [m/s3]", 0.0),
+        parameter("longest", "s", "longest inner step", 1.0),
     ],
 )
-AT, JUMP, NEXT = PATH.indices("knot", "jump", "next_inner_step")
+AT, JUMP, NEXT, LONGEST = PATH.indices("knot", "jump", "next_inner_step", "longest")
 STEP, TOLERANCE = 1e-5, 1e-8
 UNSEEN = 10.0
 """Error over the tolerance of one step of Simpson's rule with the knot at a third of it: Peano's
@@ -41,8 +43,8 @@ def out(b: np.ndarray, t: float) -> None:
 
 @kernel
 def longest(b: np.ndarray, w: np.ndarray) -> float:
-    """No step is too long [s]."""
-    return 1.0
+    """Of an inner step [s]."""
+    return b[LONGEST]
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +58,7 @@ def errors(advance, inner, count):
     jump = 324.0 * UNSEEN * TOLERANCE / inner**3
     for knot in np.linspace(0.0, inner, 98)[1:-1]:
         b, w = np.zeros(PATH.size), np.zeros(adaptive_work(1, 0))
-        b[[AT, JUMP, NEXT]] = knot, jump, inner
+        b[[AT, JUMP, NEXT, LONGEST]] = knot, jump, inner, 1.0
         assert advance(b, w, 0.0, count * inner, TOLERANCE, 0) == 0
         found.append(abs(b[0] - jump * (count * inner - knot) ** 3 / 6.0) / TOLERANCE)
     return np.array(found)
@@ -68,3 +70,11 @@ def test_a_step_that_has_none_before_sees_knots(advance, count):
     next one shows what this one hid, and both are taken again. Unseen it errs 10 times as much.
     """
     assert errors(advance, STEP, count).max() < LATE
+
+
+@pytest.mark.parametrize(("inner", "status"), [(1e-7, 0), (1e-9, TOO_SMALL), (1e-16, TOO_SMALL)])
+def test_steps_come_to_an_end(advance, inner, status):
+    """1e5 inner steps in 10 ms are many for a gearbox; 1e7 of them are told to be too many."""
+    b, w = np.zeros(PATH.size), np.zeros(adaptive_work(1, 0))
+    b[[NEXT, LONGEST]] = inner
+    assert advance(b, w, 0.0, 0.01, TOLERANCE, 0) == status
