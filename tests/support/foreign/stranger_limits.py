@@ -20,6 +20,9 @@ FOLDS = 14.0
 DEEPEST = 20.0
 """Powers of e by which a motion may have died out; below, it is rounding."""
 FEWEST, MOST = 400, 60000
+STRONG, HIGHEST = 0.2, 18.0
+"""Rate of strong growth, and powers of e by which it grows in a run: beyond, algorithms measure
+feedthrough anew, and correct by another one than at the start."""
 WINDOWS = 10
 BELOW, ABOVE = 0.98, 1.02
 
@@ -35,6 +38,8 @@ def run_rate(system, strangers, algorithm, step, expected):
         expected: rate, by which the length of the run is chosen.
     """
     steps = int(min(max(FOLDS / abs(expected), FEWEST), MOST))
+    if expected > STRONG:
+        steps = max(int(HIGHEST / expected), WINDOWS)
     made = real_parts(system, strangers)
     with closing_all([InProcessPart(p) if isinstance(p, Instance) else p for p in made]) as parts:
         network = build_network(system, parts)
@@ -45,7 +50,7 @@ def run_rate(system, strangers, algorithm, step, expected):
     moving = moving / np.abs(moving[:FEWEST]).max(axis=0).clip(1e-300)
     length = len(moving) // WINDOWS
     windows = moving[: WINDOWS * length].reshape(WINDOWS, length, -1)
-    weights = np.hanning(length)[:, None]
+    weights = np.hanning(length + 2)[1:-1, None]
     sizes = np.log(np.sqrt((weights * windows**2).mean(axis=(1, 2))).clip(1e-300))
     last = int(np.argmin(np.append(sizes > sizes[0] - DEEPEST, False)))
     used = np.arange(last // 2 if last > 3 else 0, max(last, 2))

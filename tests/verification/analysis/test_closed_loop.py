@@ -22,9 +22,8 @@ def loop():
 
 def test_ratios_that_do_not_fit(loop):
     """A coupling's twist rate is the difference of the wheels' speeds, r_p / r_w of each."""
-    pinion, wheel = (
-        loop.part("second.gear_mesh").values[f"{gear}.base_radius"] for gear in ("pinion", "wheel")
-    )
+    mesh = next(x for x in Twin(loop).instances if x.name == "second.gear_mesh")
+    pinion, wheel = mesh["pinion.base_radius"], mesh["wheel.base_radius"]
     system = loop.with_values({"second.gear_mesh.wheel.base_radius": LONGER * wheel})
     with pytest.raises(EquilibriumError, match="ratios around a closed loop") as caught:
         equilibrium(system)

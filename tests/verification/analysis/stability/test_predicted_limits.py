@@ -25,7 +25,7 @@ FAST = 1e-3
 """Growth per step that needs no step farther beyond a limit."""
 RATE = 0.01
 """Relative deviation of a measured rate: what other motions leave after half a run."""
-FOLDS = 8.0
+FOLDS = 12.0
 """Powers of e by which a run is to grow or decay: a motion decays to 3e-4, far from rounding."""
 LARGEST = 2e-4
 """Largest velocity [m/s] of a run: at the mesh frequencies less than a tenth of a deflection."""
