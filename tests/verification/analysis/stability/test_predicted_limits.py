@@ -26,7 +26,7 @@ FAST = 1e-3
 RATE = 0.01
 """Relative deviation of a measured rate: what other motions leave after half a run."""
 FOLDS = 12.0
-"""Powers of e by which a run is to grow or decay: a motion decays to 3e-4, far from rounding."""
+"""Powers of e by which a run is to grow or decay: a motion decays to 6e-6, far from rounding."""
 LARGEST = 2e-4
 """Largest velocity [m/s] of a run: at the mesh frequencies less than a tenth of a deflection."""
 KICKED = {"y_1": 1.0, "y_2": -0.5, "y_3": 0.5, "z_3": 1.0, "z_4": 0.5, "approach": 0.5}
