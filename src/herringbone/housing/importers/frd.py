@@ -15,7 +15,7 @@ import numpy as np
 from herringbone.core import ResourceError
 from herringbone.core.reading.numbers import number, whole
 from herringbone.core.reading.texts import LARGEST_MODEL, lines_of, read_text
-from herringbone.housing.importers.mode_set import ModeSet, check_modal_mass
+from herringbone.housing.importers.mode_set import ModeSet, check_modal_mass, in_order
 
 _LABEL_WIDTHS = {"0": 5, "1": 10}
 """Columns of a node number by the format number of a block; 2 and 3 are binary."""
@@ -73,7 +73,7 @@ def _parse(lines: list[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
                     raise ResourceError("the modes are complex or have no generalised mass")
                 mass = check_modal_mass(header["1PGM"], f"mode {len(shapes) + 1}")
                 frequencies.append(_frequency(header["1PGK"] / mass, number(line[12:24])))
-                shapes.append(_in_order(node, at, values) / math.sqrt(mass))
+                shapes.append(in_order(node, at, values) / math.sqrt(mass))
             header.clear()
     if not shapes:
         raise ResourceError(
@@ -115,15 +115,3 @@ def _result(lines: Iterator[str], width: int, kind: str) -> tuple[np.ndarray, np
         if line.startswith(" -3"):
             return None
     raise ResourceError("a block does not end")
-
-
-def _in_order(node: np.ndarray, labels: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values in the order of the nodes; 0 where the result leaves a node out."""
-    if np.array_equal(node, labels):
-        return values
-    rows = {int(label): i for i, label in enumerate(node)}
-    if unknown := [int(label) for label in labels if int(label) not in rows]:
-        raise ResourceError(f"a mode has the node {unknown[0]}, which has no coordinates")
-    found = np.zeros((node.size, 3))
-    found[[rows[int(label)] for label in labels]] = values
-    return found

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from herringbone.core import ResourceError
+from herringbone.housing.importers.modes_twice import check_no_mode_twice
 from herringbone.housing.importers.seat_file import SeatFile, Selection
 from herringbone.housing.modal_model import AXES, Frame, ModalHousing, Point
 
@@ -26,7 +27,7 @@ class ModeSet:
         coordinates: (k, 3) [length].
         frequency: (n,) [1/time].
         damping_ratio: (n,) [1]; NaN where the file does not tell.
-        shapes: (k, 3, n) [mass^-1/2].
+        shapes: (k, 3, n) [mass^-1/2]; NaN where a mode leaves a node out.
         source: what made them.
     """
 
@@ -36,6 +37,27 @@ class ModeSet:
     damping_ratio: np.ndarray
     shapes: np.ndarray
     source: Mapping[str, Any]
+
+
+def in_order(node: np.ndarray, labels: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(k, 3) values of a mode in the order of the nodes; NaN where it leaves a node out.
+
+    Args:
+        node: (k,) labels of all nodes.
+        labels: (m,) nodes of the mode.
+        values: (m, 3).
+
+    Raises:
+        ResourceError: a node of the mode has no coordinates.
+    """
+    if np.array_equal(node, labels):
+        return values
+    rows = {int(label): i for i, label in enumerate(node)}
+    if unknown := [int(label) for label in labels if int(label) not in rows]:
+        raise ResourceError(f"a mode has the node {unknown[0]}, which has no coordinates")
+    found = np.full((node.size, 3), math.nan)
+    found[[rows[int(label)] for label in labels]] = values
+    return found
 
 
 def real_shape(shape: np.ndarray, where: object) -> tuple[np.ndarray, complex]:
@@ -106,12 +128,14 @@ def housing_from_modes(modes: ModeSet, seats: SeatFile) -> ModalHousing:
     """Take the mean motion of the seats' and sensors' nodes, in SI units and the gearbox frame.
 
     Raises:
-        ResourceError: a node is missing.
+        ResourceError: a node is missing, has no shape in a mode, or a mode stands twice.
     """
+    check_no_mode_twice(modes.frequency, modes.shapes, modes.source["file"])
     rows = {int(label): i for i, label in enumerate(modes.node)}
     points, shapes = [], []
     for selection in seats.selections:
         at = node_rows(rows, selection, seats)
+        _check_complete(modes, at, selection, seats)
         position = selection.position or selection.weights @ modes.coordinates[at]
         points.append(make_point(selection, np.asarray(position), seats))
         mean = np.einsum("k,kan->an", selection.weights, modes.shapes[at])
@@ -137,6 +161,18 @@ def housing_from_modes(modes: ModeSet, seats: SeatFile) -> ModalHousing:
         {**modes.source, **({"description": seats.source} if seats.source else {})},
         make_frame(seats),
     )
+
+
+def _check_complete(modes: ModeSet, at: list[int], selection: Selection, seats: SeatFile) -> None:
+    """Refuse a node without a shape: taken as motionless, it would make the seat too stiff."""
+    for row in at:
+        left_out = np.isnan(modes.shapes[row]).any(axis=0)
+        if left_out.any():
+            raise ResourceError(
+                f"{seats.path}: {selection.role} {selection.name}: node {modes.node[row]} has no "
+                f"shape in mode {int(np.argmax(left_out)) + 1} of {modes.source['file']}; export "
+                "shapes at all nodes of seats and sensors"
+            )
 
 
 def node_rows(rows: Mapping[int, int], selection: Selection, seats: SeatFile) -> list[int]:

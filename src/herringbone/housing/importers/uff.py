@@ -15,6 +15,7 @@ from herringbone.core.reading.universal import universal_sets
 from herringbone.housing.importers.mode_set import (
     ModeSet,
     check_modal_mass,
+    in_order,
     mass_of_complex_mode,
     real_shape,
 )
@@ -46,7 +47,7 @@ def read_uff(path: str | Path, seats: SeatFile) -> ModeSet:
             _check_units(units[-1], seats)
         node, coordinates = _nodes(sets)
         modes = _modes(sets)
-        shapes = [_in_order(node, labels, shape) for _, _, labels, shape in modes]
+        shapes = [in_order(node, labels, shape) for _, _, labels, shape in modes]
     except ResourceError as error:
         raise ResourceError(f"{path}: {error}") from None
     except (ValueError, KeyError, TypeError, IndexError, ArithmeticError) as error:
@@ -138,13 +139,3 @@ def _mode_2414(item: Mapping[str, Any]) -> tuple[float, float, np.ndarray, np.nd
     zeta = _damping(item["record12_field5"], item["record12_field6"])
     labels = np.asarray(item["node_nums"]).astype(int)
     return item["record12_field2"], zeta, labels, shape / math.sqrt(mass)
-
-
-def _in_order(node: np.ndarray, labels: np.ndarray, shape: np.ndarray) -> np.ndarray:
-    """Shape in the order of the nodes; 0 where the data set leaves a node out."""
-    rows = {int(label): i for i, label in enumerate(node)}
-    if unknown := [int(label) for label in labels if int(label) not in rows]:
-        raise ResourceError(f"a mode has the node {unknown[0]}, which has no coordinates")
-    found = np.zeros((node.size, 3))
-    found[[rows[int(label)] for label in labels]] = shape
-    return found

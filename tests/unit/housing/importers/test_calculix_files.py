@@ -1,5 +1,7 @@
 """Modes of CalculiX, read back to their digits."""
 
+import re
+
 import numpy as np
 import pytest
 from support.files.fe_files import NODES, SEATS, frd_text, modes_of
@@ -64,6 +66,28 @@ def test_modes_need_seats(frd, seats):
     assert "valid_to_hz is missing" in refusal(lambda: load(frd(), seats))
     seats.write_text(SEATS.replace("[4, 5, 6]", "[4, 5, 99]"))
     assert "seat pinion_right: the model has no node 99" in refusal(lambda: load(frd(), seats))
+
+
+def test_nodes_that_a_block_leaves_out(frd, seats):
+    path = frd()
+    head, *blocks = path.read_text().split(" -5  D1")
+    blocks[2] = re.sub(r" -1 {9}5.*\n", "", blocks[2], count=1)
+    path.write_text(" -5  D1".join([head, *blocks]))
+    text = refusal(lambda: load(path, seats))
+    assert "seat pinion_right: node 5 has no shape in mode 3 of modes.frd" in text
+
+
+def test_two_steps_with_the_same_modes(tmp_path, seats, model):
+    """Equal frequencies are legal where the shapes are independent."""
+    frequency, shapes = modes_of(model)
+    path = tmp_path / "modes.frd"
+    twice = np.tile(frequency, 2), np.tile(shapes, 2)
+    path.write_text(frd_text(*twice, model[2]))
+    text = refusal(lambda: load(path, seats))
+    assert f"modes.frd: modes 1 and 37 are the same, with {frequency[0]:.6g}"[:-1] in text
+    frequency[:6] = frequency[0]
+    path.write_text(frd_text(frequency, shapes, model[2]))
+    np.testing.assert_allclose(load(path, seats).frequency_hz[:6], frequency[0], rtol=5e-7)
 
 
 def test_static_compliance_completes_few_modes(tmp_path, seats, model):

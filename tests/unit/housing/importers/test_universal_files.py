@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support.files.fe_files import NODES, modes_of, text_2414
+from support.files.fe_files import NODES, SEATS, modes_of, text_2414
 from support.imported_housing import assert_same_receptance, load, refusal
 
 from herringbone.housing.importers.mode_set import real_shape
@@ -24,14 +24,14 @@ def node_set(pyuff, coordinates):
     )
 
 
-def shape_sets(pyuff, frequency, shapes, *, mass=2.0, zeta=0.03, eta=0.0):
+def shape_sets(pyuff, frequency, shapes, *, mass=2.0, zeta=0.03, eta=0.0, nodes=NODES):
     for n, f in enumerate(frequency):
         yield pyuff.prepare_55(
             id1="NONE", id2="NONE", id3="NONE", id4="NONE", id5="NONE",
             model_type=1, analysis_type=2, data_ch=2, spec_data_type=8, data_type=2,
             n_data_per_node=3, load_case=1, mode_n=n + 1, freq=f, modal_m=mass,
-            modal_damp_vis=zeta, modal_damp_his=eta, node_nums=np.arange(1, NODES + 1),
-            r1=shapes[:, 0, n], r2=shapes[:, 1, n], r3=shapes[:, 2, n],
+            modal_damp_vis=zeta, modal_damp_his=eta, node_nums=np.arange(1, nodes + 1),
+            r1=shapes[:nodes, 0, n], r2=shapes[:nodes, 1, n], r3=shapes[:nodes, 2, n],
         )  # fmt: skip
 
 
@@ -145,3 +145,20 @@ def test_bad_uff(pyuff, write_uff, seats, model):
     )  # fmt: skip
     expected = "says that a unit of length is 1 m and of mass 1 kg; "
     assert expected in text(write_uff(units, *shape_sets(pyuff, frequency, shapes)))
+
+
+def test_nodes_without_a_shape(pyuff, write_uff, seats, model):
+    """Not motionless; nodes that no seat or sensor has may be left out."""
+    path = write_uff(*shape_sets(pyuff, *modes_of(model), nodes=NODES - 1))
+    expected = "seat wheel_right: node 12 has no shape in mode 1 of modes.unv; export shapes at all"
+    assert expected in refusal(lambda: load(path, seats))
+    seats.write_text(SEATS.replace("[10, 11, 12]", "[10, 11]").replace("[12]", "[11]"))
+    assert load(path, seats).frequency_hz.size == 3 * NODES
+
+
+def test_modes_that_stand_in_two_kinds_of_data_sets(pyuff, write_uff, seats, model):
+    frequency, shapes = modes_of(model)
+    path = write_uff(*shape_sets(pyuff, frequency, np.sqrt(2.0) * shapes))
+    with path.open("a") as file:
+        file.write("\n".join(text_2414(frequency, -shapes)) + "\n")
+    assert "modes.unv: modes 1 and 37 are the same" in refusal(lambda: load(path, seats))
