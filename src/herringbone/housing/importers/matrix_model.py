@@ -215,9 +215,18 @@ def _labels(model: MatrixModel, seats: SeatFile) -> Mapping[Row, int]:
 def _check_translations(model: MatrixModel, seats: SeatFile) -> None:
     """Refuse rows that are not x, y and z of each node: a mass is the same in all directions.
 
-    Six rows per node are a multiple of three, too, and seats would be taken at other nodes.
+    Six rows per node are a multiple of three, too, and seats would be taken at other nodes; of
+    lumped masses the rotations have none.
     """
     mass = sp.csr_array(model.mass)
+    massless = abs(mass).sum(axis=1).reshape(-1, 3).max(axis=1) == 0.0
+    if massless.any() and not massless.all():
+        raise ResourceError(
+            f"{seats.path}: the matrices have {mass.shape[0]} rows without labels; as x, y, z of "
+            f"each node {massless.sum()} of {massless.size} nodes would have no mass, the first "
+            f"is node {int(massless.argmax()) + 1}: such rows are rotations; give [matrix] rows, a "
+            "file of 'node.axis' lines"
+        )
     along = np.array([mass[k::3, k::3].sum() for k in range(3)])
     if np.ptp(along) > _SAME_MASS * np.abs(along).max():
         ratios = ", ".join(f"{share:.4g}" for share in along / along[0])

@@ -68,6 +68,17 @@ def test_rows_that_are_not_three_per_node(placed, tmp_path):
     assert "nodes have rotations" in said
 
 
+def test_rotations_without_inertia(placed, tmp_path):
+    """Lumped masses are the same along all axes, with rotations as without."""
+    files = [tmp_path / "K.mtx", tmp_path / "M.mtx"]
+    mass = np.diag(np.tile([2.0, 2.0, 2.0, 0.0, 0.0, 0.0], 6))
+    scipy.io.mmwrite(files[0], sp.eye_array(36).tocoo())
+    scipy.io.mmwrite(files[1], sp.coo_array(mass), precision=17)
+    said = refusal(lambda: load(files, placed))
+    assert "6 of 12 nodes would have no mass, the first is node 2: such rows are rotations" in said
+    assert "give [matrix] rows" in said
+
+
 def test_static_compliance_is_of_modes(matrix_files, placed):
     placed.write_text(placed.read_text().replace("[units]", 'static = "nowhere.csv"\n[units]', 1))
     assert "static = " in (said := refusal(lambda: load(matrix_files[:2], placed)))
