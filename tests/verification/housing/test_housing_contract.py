@@ -202,6 +202,28 @@ def test_no_damping_is_a_remark(monkeypatch):
         assert ("next to no damping" in remark.measured) == said
 
 
+@pytest.mark.parametrize(
+    ("hz", "longest", "verdict", "said"),
+    [
+        (70.0, None, Verdict.HOLDS, "% in 96 ms"),
+        (25.0, None, Verdict.REMARK, "slow vibration: drifts by"),
+        (70.0, 800, Verdict.FAILS, "drifts by"),
+    ],
+)
+def test_soft_mounts(monkeypatch, hz, longest, verdict, said):
+    """6 ms, and 96 ms where these are allowed: 6.7 and 2.4 periods."""
+    monkeypatch.setattr(housing_behaviour, "_SETTLING", 300)
+
+    class Mounted(Seats):
+        def force(self, f, s, v):
+            w = 2.0 * np.pi * hz
+            return f - MASS * (w**2 * s + 0.06 * w * v)
+
+    found = {f.test: f for f in check_housing(Mounted, longest=longest)}
+    assert found["static compliance"].verdict is verdict
+    assert said in found["static compliance"].measured
+
+
 def test_a_slow_housing_is_told_and_tested_in_short_runs(monkeypatch, caplog):
     """Steps are told as they are taken, but for the few before; what takes longer is left out."""
     monkeypatch.setattr(housing_behaviour, "_SETTLING", 900)

@@ -11,6 +11,7 @@ import numpy as np
 
 from herringbone.analysis.finding import Finding, judged, remark
 from herringbone.analysis.housing.runs import FORCES, POSITIONS, VELOCITIES, Runs
+from herringbone.analysis.housing.statics import judge_statics, mean_response
 
 RECORDS = 20
 """Random force records of the test of passivity."""
@@ -22,8 +23,6 @@ SHORT = 2 * _RECORD
 _BAND_HZ = (50.0, 2000.0)
 _SINES = 6
 
-STATIC_ERROR = 0.02
-_ROUNDING = 1e-9
 RECIPROCITY_ERROR = 0.01
 SUPERPOSITION_ERROR = 1e-3
 NEGATIVE_WORK = 1e-3
@@ -115,26 +114,13 @@ class Behaviour:
         return judged("zero stays zero", largest == 0.0, f"{largest:g}", "0")
 
     def statics(self, static: np.ndarray | None) -> Finding:
-        """The mean of the step responses, weighted so that vibration drops out."""
-        responses = self._unit_responses
-        found = _mean(responses)
-        if static is None:
-            later = _mean(responses[:, responses.shape[1] // 4 :])
-            reference, what = later, "drifts by"
-        else:
-            reference, what = static, "off by"
-        error = float(np.abs(found - reference).max() / np.abs(reference).max())
-        lowest, *_, highest = np.linalg.eigvalsh((found + found.T) / 2.0)
-        positive = highest > 0.0 and lowest >= -_ROUNDING * highest  # directions may be rigid
-        holds = error <= STATIC_ERROR and positive
-        sign = "" if positive else ", not positive" if highest > 0.0 else ", forces backwards"
-        shown = f"{what} {100 * error:.2g} %{sign}"
-        return judged("static compliance", holds, shown, f"{100 * STATIC_ERROR:g} %, positive")
+        """See `judge_statics`; what does not settle at once is asked for longer."""
+        return judge_statics(self._runs, self._unit_responses, _FORCE, static)
 
     @property
     def compliance(self) -> float:
         """Largest static compliance of a seat, along the force [m/N]."""
-        return float(np.abs(_mean(self._unit_responses).diagonal()).max())
+        return float(np.abs(mean_response(self._unit_responses).diagonal()).max())
 
     def size(self, usual: float | None) -> Finding:
         """How far seats give way, against another housing [m/N]; wrong units show here."""
@@ -216,12 +202,6 @@ def least_work(run: Callable[[np.ndarray], np.ndarray], seed: int, step: float) 
     forces = random_forces(seed, step)
     work = np.cumsum((forces * np.diff(run(forces), axis=0)).sum(axis=1))
     return float(work.min() / np.abs(work).max())
-
-
-def _mean(responses: np.ndarray) -> np.ndarray:
-    """(12, 12) mean over time under a Hann window."""
-    window = np.hanning(responses.shape[1])
-    return np.einsum("n,fns->fs", window / window.sum(), responses)
 
 
 def _rms(values: np.ndarray) -> float:

@@ -60,6 +60,10 @@ class Runs:
         finally:
             part.close()
 
+    def allows(self, steps: int) -> bool:
+        """True if a run may have so many steps."""
+        return self._longest is None or steps <= self._longest
+
     def tell_cost(self, name: str, steps: int, short: int) -> None:
         """Say what further tests of a slow housing take, after the first runs; no clock decides.
 
