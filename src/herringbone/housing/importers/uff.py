@@ -25,6 +25,8 @@ _KINDS = {15, 55, 164, 2411, 2414}
 _NORMAL, _COMPLEX = 2, 3
 _DISPLACEMENT = (0, 1, 8)
 """Specific data types that can be displacements: unknown, general, displacement."""
+_GLOBAL = {0, 1}
+"""Labels by which programs mean the global coordinate system."""
 _DIGITS = 1e-4
 
 
@@ -33,11 +35,12 @@ def read_uff(path: str | Path, seats: SeatFile) -> ModeSet:
 
     Args:
         path: the file.
-        seats: its units are compared with those of data set 164.
+        seats: its units are compared with those of data set 164; its nodes must be given in
+            global coordinates and directions.
 
     Raises:
         ResourceError: pyuff is missing, not readable, truncated, without nodes or modes, unscaled,
-            complex, or the units disagree.
+            complex, in local coordinates, or the units disagree.
     """
     path = Path(path)
     sets = universal_sets(path, _KINDS)
@@ -45,7 +48,7 @@ def read_uff(path: str | Path, seats: SeatFile) -> ModeSet:
     try:
         if units:
             _check_units(units[-1], seats)
-        node, coordinates = _nodes(sets)
+        node, coordinates = _nodes(sets, seats)
         modes = _modes(sets)
         shapes = [in_order(node, labels, shape) for _, _, labels, shape in modes]
     except ResourceError as error:
@@ -73,20 +76,45 @@ def _check_units(units: Mapping[str, Any], seats: SeatFile) -> None:
         )
 
 
-def _nodes(sets: list[dict[str, Any]]) -> tuple[np.ndarray, np.ndarray]:
-    for item in sets:
-        if item["type"] in {15, 2411}:
-            systems = np.unique(np.asarray(item["disp_cs"]))
-            if systems.size > 1:
-                raise ResourceError(
-                    "nodes have several displacement coordinate systems; export global directions"
-                )
-            labels = np.asarray(item["node_nums"]).astype(int)
-            places = np.column_stack([item["x"], item["y"], item["z"]])
-            if len(labels) != len(places):
-                raise ResourceError(f"{len(labels)} nodes have {len(places)} coordinates")
-            return labels, places
-    raise ResourceError("no data set 15 or 2411 holds nodes")
+def _nodes(sets: list[dict[str, Any]], seats: SeatFile) -> tuple[np.ndarray, np.ndarray]:
+    """Labels (k,) and coordinates (k, 3) of all sets of nodes."""
+    found = [item for item in sets if item["type"] in {15, 2411}]
+    if not found:
+        raise ResourceError("no data set 15 or 2411 holds nodes")
+    for item in found:
+        if len(item["node_nums"]) != len(item["x"]):
+            raise ResourceError(f"{len(item['node_nums'])} nodes have {len(item['x'])} coordinates")
+    labels = np.concatenate([np.asarray(item["node_nums"]).astype(int) for item in found])
+    places = np.vstack([np.column_stack([item["x"], item["y"], item["z"]]) for item in found])
+    _check_places(labels, places)
+    _check_global(labels, found, seats)
+    return labels, places
+
+
+def _check_places(labels: np.ndarray, places: np.ndarray) -> None:
+    """Refuse a node that has another place in another set."""
+    _, first, which = np.unique(labels, return_index=True, return_inverse=True)
+    apart = np.abs(places - places[first][which]).max(axis=1)
+    if (apart > _DIGITS * np.abs(places).max()).any():
+        raise ResourceError(f"node {labels[int(apart.argmax())]} stands twice, at two places")
+
+
+def _check_global(labels: np.ndarray, sets: list[dict[str, Any]], seats: SeatFile) -> None:
+    """Refuse seats and sensors in coordinates that are not the global ones."""
+    used = np.isin(labels, [node for selection in seats.selections for node in selection.nodes])
+    for key, what in (("def_cs", "definition"), ("disp_cs", "displacement")):
+        system = np.concatenate([np.asarray(item[key]).astype(int) for item in sets])
+        if local := sorted(set(system[used].tolist()) - _GLOBAL):
+            node = labels[used & (system == local[0])][0]
+            raise ResourceError(
+                f"node {node} is in the {what} coordinate system {local[0]}; export seats and "
+                "sensors in global coordinates and directions (0 or 1)"
+            )
+        if len(several := sorted(set(system[used].tolist()))) > 1:
+            raise ResourceError(
+                f"nodes of seats and sensors are in the {what} coordinate systems "
+                f"{several[0]} and {several[1]}; export all in one, the global one"
+            )
 
 
 def _modes(sets: list[dict[str, Any]]) -> list[tuple[float, float, np.ndarray, np.ndarray]]:

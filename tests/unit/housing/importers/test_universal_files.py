@@ -17,11 +17,12 @@ def pyuff():
     return pytest.importorskip("pyuff", reason="pyuff is in the extra `import`")
 
 
-def node_set(pyuff, coordinates):
-    ones = np.ones(NODES, dtype=int)
+def node_set(pyuff, coordinates, *, first=1, def_cs=1, disp_cs=1):
+    ones = np.ones(len(coordinates), dtype=int)
     return pyuff.prepare_2411(
-        np.arange(1, NODES + 1), ones, ones, ones, *coordinates.T, return_full_dict=True
-    )
+        first + np.arange(len(coordinates)), def_cs * ones, disp_cs * ones, ones, *coordinates.T,
+        return_full_dict=True,
+    )  # fmt: skip
 
 
 def shape_sets(pyuff, frequency, shapes, *, mass=2.0, zeta=0.03, eta=0.0, nodes=NODES):
@@ -145,6 +146,39 @@ def test_bad_uff(pyuff, write_uff, seats, model):
     )  # fmt: skip
     expected = "says that a unit of length is 1 m and of mass 1 kg; "
     assert expected in text(write_uff(units, *shape_sets(pyuff, frequency, shapes)))
+
+
+def test_nodes_in_two_sets(pyuff, tmp_path, seats, model):
+    """Node 6 stands in both."""
+    path = tmp_path / "modes.unv"
+    shapes = list(shape_sets(pyuff, *modes_of(model)))
+
+    def write(other):
+        halves = node_set(pyuff, model[2][:6]), node_set(pyuff, other[5:], first=6)
+        pyuff.UFF(str(path)).write_sets([*halves, *shapes], "overwrite")
+
+    write(model[2])
+    position = model[2][9:].mean(axis=0) - [100, 0, 0]
+    expected = 1e-3 * np.array([position[1], -position[0], position[2]])
+    np.testing.assert_allclose(load(path, seats).points[3].position, expected, rtol=1e-12)
+    write(2.0 * model[2])
+    assert "modes.unv: node 6 stands twice, at two places" in refusal(lambda: load(path, seats))
+
+
+@pytest.mark.parametrize(
+    ("systems", "expected"),
+    [
+        ({"disp_cs": 7}, "node 1 is in the displacement coordinate system 7; export seats and"),
+        ({"def_cs": 3}, "node 1 is in the definition coordinate system 3; export seats and"),
+        ({"disp_cs": np.arange(12) // 6}, "in the displacement coordinate systems 0 and 1; export"),
+        ({"def_cs": np.arange(12) // 6}, "in the definition coordinate systems 0 and 1; export"),
+    ],
+)
+def test_nodes_in_local_coordinates(pyuff, tmp_path, seats, model, systems, expected):
+    path = tmp_path / "modes.unv"
+    nodes = node_set(pyuff, model[2], **systems)
+    pyuff.UFF(str(path)).write_sets([nodes, *shape_sets(pyuff, *modes_of(model))], "overwrite")
+    assert expected in refusal(lambda: load(path, seats))
 
 
 def test_nodes_without_a_shape(pyuff, write_uff, seats, model):
