@@ -43,6 +43,24 @@ def test_reduce(data, capsys):
     assert f"error certified below {100 * bound:.2g} % of the static compliance" in out
 
 
+def test_reduce_data_with_a_residual_matrix(here, capsys):
+    """Pseudo modes carry the statics; what is not certified is not said to be."""
+    full = small_housing(static=None, residual=1e-9 * np.eye(12), certificate={})
+    write_housing(full, "test")
+    reduced = ["housing", "reduce", "test", "--band", "600"]
+    assert cli.main([*reduced, "--tolerance", "1e-9"]) == 0
+    out = capsys.readouterr().out
+    assert "All 20 oscillators are needed to 600 Hz; with 12 pseudo modes of the residual" in out
+    assert "there are 32: 18 normal and 14 residual modes\nNothing is certified" in out
+    found = read_housing("results/test-600Hz").static_compliance()
+    np.testing.assert_allclose(found, full.static_compliance() + full.residual, rtol=1e-9)
+    assert cli.main([*reduced, "--json"]) == 0
+    figures = json.loads(capsys.readouterr().out)
+    assert figures["certified"]
+    assert figures["static_difference"] < 1e-10
+    assert 0.0 < figures["error_against_data"] <= figures["error_bound"] <= 0.05
+
+
 def test_scenes_ask_of_the_data_that_are_reduced_a_zip_file_too(here, capsys):
     """Softer than the shipped housing: its lines are others."""
     shipped = read_housing(component_folder("modal_housing") / "resources")

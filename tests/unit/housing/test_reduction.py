@@ -176,6 +176,7 @@ def test_certificate_at_a_lower_band():
     assert certified_bound(full, BAND / 2) == pytest.approx(expected, rel=1e-12)
     assert certified_bound(full, BAND) == full.certificate["error_bound"]
     assert certified_bound(replace(full, certificate={}), BAND) == 0.0
+    assert certified_bound(replace(full, certificate={"error_bound": None}), BAND) == 0.0
 
 
 def test_nothing_is_dropped_if_all_is_needed():

@@ -1,15 +1,17 @@
-"""Housings of dimensions in the cache: made once, whoever asks, and whole."""
+"""Housings of dimensions in the cache: made once, whoever asks, and whole; data in a run."""
 
 import shutil
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from herringbone.core.places.paths import CACHE_VARIABLE
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.housing import default_housing, read_housing
+from herringbone.housing import default_housing, read_housing, write_housing
 from herringbone.housing.welded import build, default_data
 from herringbone.running.housings.given import with_housing_data
 
@@ -57,3 +59,12 @@ def test_who_asks_for_one_that_another_one_makes_waits_for_it(made, used):
     with ThreadPoolExecutor(4) as pool:
         assert len({future.result() for future in [pool.submit(used) for _ in range(4)]}) == 1
     assert len(made) == 1
+
+
+def test_a_residual_matrix_that_a_run_leaves_out_is_told_once(tmp_path, caplog):
+    housing = default_housing()
+    write_housing(replace(housing, residual=1e-10 * np.eye(12)), tmp_path / "tested")
+    for _ in range(2):
+        with_housing_data(read_system("gearbox"), {"modal_housing": tmp_path / "tested"})
+    (record,) = caplog.records
+    assert "too stiff without residual.csv; 'herringbone housing reduce" in record.getMessage()

@@ -18,7 +18,11 @@ from herringbone.housing import ModalHousing, read_housing, write_housing
 from herringbone.housing.files.file_format import DATA
 from herringbone.housing.importers import import_housing, is_matrix
 from herringbone.housing.reduction.error import drive_point_errors
-from herringbone.housing.reduction.reduced_housing import certified_bound, reduce_housing
+from herringbone.housing.reduction.reduced_housing import (
+    certified_bound,
+    reduce_housing,
+    with_residual_modes,
+)
 
 _DECADES, _POINTS = 1.3, 800
 _MOST_MODES = component_for(Role.HOUSING).declaration.vectors[0].capacity
@@ -27,7 +31,8 @@ _MOST_MODES = component_for(Role.HOUSING).declaration.vectors[0].capacity
 def reduce_command(options: argparse.Namespace) -> int:
     """Reduce modal data, write them with their certificate and a picture beside the full data."""
     full = read_housing(options.data)
-    asked = asked_by(options, full)
+    complete = with_residual_modes(full)
+    asked = asked_by(options, complete)
     band = band_for(options, asked, full.valid_to_hz)
     stem = options.data.name.removesuffix(".zip")
     output = options.output or Path("results") / f"{stem}-{band:g}Hz"
@@ -35,24 +40,27 @@ def reduce_command(options: argparse.Namespace) -> int:
         raise HerringboneError(f"-o {output} would overwrite the full data; choose another place")
     check_writable(_folder(output))
     reduced = reduce_housing(full, band_hz=band, tolerance=options.tolerance)
-    if reduced.frequency_hz.size < full.frequency_hz.size:
+    certified = reduced.certificate != full.certificate
+    if reduced.frequency_hz.size < full.frequency_hz.size and full.residual is None:
         of = {DATA: str(options.data.resolve())}
         reduced = replace(reduced, certificate={**reduced.certificate, **of})
     frequency_hz = band * np.logspace(-_DECADES, 0.0, _POINTS)
-    errors = drive_point_errors(full, reduced, frequency_hz)
-    static = np.diag(full.static_compliance())
+    errors = drive_point_errors(complete, reduced, frequency_hz)
+    static = np.diag(complete.static_compliance())
     difference = float(np.abs(np.diag(reduced.static_compliance()) / static - 1.0).max())
     _write(reduced, output)
     picture = _folder(output) / f"{output.name.removesuffix('.zip')}.png"
-    _draw(full, reduced, frequency_hz, errors, picture)
+    _draw(complete, reduced, frequency_hz, errors, picture)
     figures = {
         "oscillators": reduced.frequency_hz.size,
         "normal_modes": reduced.kind.count("normal"),
         "residual_modes": reduced.kind.count("residual"),
         "full_oscillators": full.frequency_hz.size,
+        "pseudo_modes_of_residual": complete.frequency_hz.size - full.frequency_hz.size,
         "band_hz": band,
         "tolerance": options.tolerance,
-        "error_bound": certified_bound(reduced, band),
+        "error_bound": _bound(reduced, band),
+        "certified": certified,
         "error_against_data": float(errors.max()),
         "static_difference": difference,
         "files": [str(output), str(picture)],
@@ -63,22 +71,38 @@ def reduce_command(options: argparse.Namespace) -> int:
     return 0
 
 
+def _bound(housing: ModalHousing, band: float) -> float | None:
+    """Certified error bound up to a band [Hz]; None if the data have no certificate."""
+    certified = housing.certificate.get("error_bound") is not None
+    return certified_bound(housing, band) if certified else None
+
+
 def _text(figures: dict) -> str:
     before, after = figures["full_oscillators"], figures["oscillators"]
+    pseudo, bound = figures["pseudo_modes_of_residual"], figures["error_bound"]
     counts = f"{figures['normal_modes']} normal and {figures['residual_modes']} residual modes"
-    if before == after:
-        lines = [f"All {before} oscillators, {counts}, are needed to {figures['band_hz']:g} Hz"]
-        if figures["error_bound"]:
-            lines[0] += f"; certified before to {100 * figures['error_bound']:.2g} %"
-    else:
+    if figures["certified"]:
         lines = [
             f"{before} oscillators became {after}: {counts}",
             f"Receptance at the seats up to {figures['band_hz']:g} Hz: error certified below "
-            f"{100 * figures['error_bound']:.2g} % of the static compliance (tolerance "
+            f"{100 * bound:.2g} % of the static compliance (tolerance "
             f"{100 * figures['tolerance']:g} %), {100 * figures['error_against_data']:.2g} % "
             "against the data",
             f"Static compliance at the seats differs by {figures['static_difference']:.1e}",
         ]
+        if pseudo:
+            lines[1] += f", whose residual matrix counts as {pseudo} pseudo modes"
+    else:
+        lines = [f"All {before} oscillators, {counts}, are needed to {figures['band_hz']:g} Hz"]
+        if pseudo:
+            lines[0] = (
+                f"All {before} oscillators are needed to {figures['band_hz']:g} Hz; with {pseudo} "
+                f"pseudo modes of the residual matrix there are {after}: {counts}"
+            )
+        if bound:
+            lines[0] += f"; certified before to {100 * bound:.2g} %"
+        elif pseudo:
+            lines.append("Nothing is certified; the static compliance is that of the data")
     lines += [
         f"{name}: changed by {100 * found['error']:.2g} %, worst output {found['worst']}: "
         f"{100 * found['worst_error']:.2g} %"

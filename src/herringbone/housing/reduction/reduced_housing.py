@@ -75,7 +75,7 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
 def certified_bound(housing: ModalHousing, band_hz: float) -> float:
     """What the certificate of modal data says of their error up to a band; 0 without one."""
     certificate = housing.certificate
-    bound, following = certificate.get("error_bound", 0.0), certificate.get("next_frequency_hz")
+    bound, following = certificate.get("error_bound") or 0.0, certificate.get("next_frequency_hz")
     if not bound or not following:
         return float(bound)
     at = np.array([band_hz, certificate["band_hz"]])

@@ -1,6 +1,8 @@
 """A housing put into a system: modal data, a welded housing's dimensions, or an FMU."""
 
+import logging
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 from herringbone.analysis.anatomy import anatomy
@@ -15,8 +17,9 @@ from herringbone.core.process.activity import activity
 from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System
 from herringbone.housing import read_housing, write_housing
-from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
+from herringbone.housing.files.file_format import COMPLIANCES, HEAD, MODES, SHAPES
 
+_LOG = logging.getLogger("herringbone")
 _FILES = {Quantity.MODES: MODES, Quantity.SHAPES: SHAPES}
 _LIBRARIES = "numpy", "scipy"
 """Whose versions may change the last digits."""
@@ -60,7 +63,8 @@ def with_housing_data(system: System, data: Mapping[str, Path]) -> System:
     known = anatomy(system)
     for part, given in data.items():
         folder = given if is_folder(given) else _built(given)
-        read_housing(folder)
+        if read_housing(folder).residual is not None:
+            _tell_residual(option("housing", str(given)), folder)
         columns = {known.column(part, quantity): file for quantity, file in _FILES.items()}
         if None in columns:
             raise ParameterError(
@@ -69,6 +73,16 @@ def with_housing_data(system: System, data: Mapping[str, Path]) -> System:
         files = {str(column): str((folder / file).absolute()) for column, file in columns.items()}
         system = system.with_values(files)
     return system
+
+
+@cache
+def _tell_residual(asked: str, folder: Path) -> None:
+    """Say once of a folder that what its modes miss of the compliance is left out."""
+    _LOG.warning(
+        "%s: a run takes the modes alone and is too stiff without %s; 'herringbone housing reduce "
+        "%s -o NEW' makes pseudo modes of it: take NEW",
+        asked, COMPLIANCES["residual"], folder,
+    )  # fmt: skip
 
 
 def _built(file: Path) -> Path:
