@@ -30,7 +30,8 @@ slices' harmonics over theirs.
 
 The coupled slices keep to 3 % of the mean (4 % with large bores), and to 15 % of a harmonic but for
 two of 80, below 0.2 % of the mean, which they miss by 0.03 % of it.  Plain slices have the same
-means and miss harmonics by up to 8 % of them.  At 0.4 of the load it is the same.
+means without modification and miss harmonics by up to 8 % of them.  At 0.4 of the load it is the
+same.
 """
 
 from collections.abc import Callable

@@ -193,11 +193,10 @@ def mesh_stiffness(
     with one_blas_thread():
         found, solved = _table(task, name, progress or silent)
         accuracy = accuracy_of(name, task.pair)
-        bounds = accuracy.of_harmonics(found)
+        stated = Uncertainty(accuracy.mean, accuracy.of_harmonics(found))
         if name == "slices":
             better, _ = _table(task, "coupled-slices", silent)
-            apart = (found.harmonics() - better.harmonics())[:, :_STATED]
-            bounds = accuracy.of_harmonics(better) + np.abs(apart)
+            stated = _apart(found, better, accuracy)
     narrow = ""
     if accuracy is _NARROWER:
         wide = task.pair.face_width / task.pair.normal_module
@@ -205,8 +204,20 @@ def mesh_stiffness(
     return replace(
         found,
         method=f"{found.method}, {task.phases} phases out of {solved}{narrow}",
-        uncertainty=Uncertainty(accuracy.mean, bounds),
+        uncertainty=stated,
     )
+
+
+def _apart(found: MeshStiffness, better: MeshStiffness, accuracy: Accuracy) -> Uncertainty:
+    """Uncertainty of a table: its distance from a better one on top of that one's.
+
+    Of the mean it is the largest at any load: teeth with crowning yield most at small ones.
+    """
+    loaded = found.loads > 0.0
+    mean, of_better = (table.secant[loaded].mean(axis=1) for table in (found, better))
+    off = (np.abs(mean - of_better) + accuracy.mean * of_better) / mean
+    apart = np.abs(found.harmonics() - better.harmonics())[:, :_STATED]
+    return Uncertainty(float(off.max()), accuracy.of_harmonics(better) + apart)
 
 
 def _table(task: Task, method: str, progress: Progress) -> tuple[MeshStiffness, int]:
