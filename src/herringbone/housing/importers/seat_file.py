@@ -205,4 +205,9 @@ def _selection(name: str, role: str, item: Mapping[str, Any]) -> Selection:
     if unknown := [dof for dof in dofs if dof not in AXES]:
         raise ResourceError(f"{role} {name}: dof '{unknown[0]}' is none of {', '.join(AXES)}")
     coupling = str(item.get("coupling", "node" if len(nodes) == 1 else "rbe3"))
+    if len(nodes) > 1 and coupling != "rbe3":
+        raise ResourceError(
+            f"{role} {name}: coupling '{coupling}' of {len(nodes)} nodes: it moves as their "
+            "weighted mean (rbe3); leave it out, or give the one node that a rigid element ties"
+        )
     return Selection(name, role, tuple(nodes), weights / weights.sum(), dofs, coupling, position)

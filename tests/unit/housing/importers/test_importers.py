@@ -20,6 +20,7 @@ BAD_SEATS = [
     ("[1, 2, 1] }", "[1, -2, 1] }", "the weights must have a positive sum"),
     ("[100, 0, 0]", "[100, 0]", "frame origin is missing or not 3 finite numbers"),
     ('["z"]', '["n"]', "sensor A: dof 'n' is none of x, y, z"),
+    ("[4, 5, 6] }", '[4, 5, 6], coupling = "rbe2" }', "coupling 'rbe2' of 3 nodes: it moves as"),
     ("ratio = 0.02", 'ratio = "low"', "damping ratio is missing or not one finite number"),
     ("[frame]", "[frame", "cannot read"),
 ]
