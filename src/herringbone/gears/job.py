@@ -10,7 +10,13 @@ from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.mesh_assumptions import MeshAssumptions
 from herringbone.gears.stiffness.calibration import full_torque
 from herringbone.gears.stiffness.contact_slices import SLICES
-from herringbone.gears.stiffness.methods import AUTO, Task, check_calibration
+from herringbone.gears.stiffness.methods import (
+    AUTO,
+    METHODS,
+    Task,
+    check_calibration,
+    chosen_method,
+)
 from herringbone.gears.stiffness.slices import PHASES
 
 OVERLOAD = 25.0
@@ -58,6 +64,14 @@ class GearJob:
         if self.torque is not None:
             return self.torque
         return full_torque(self.pair)
+
+    def unused(self, method: str | None = None) -> tuple[str, ...]:
+        """Lines on what is given for another method than that of the table; the job's if None."""
+        name = chosen_method(self.method if method is None else method)
+        if self.slices == SLICES or name == "slices":
+            return ()
+        title = METHODS[name].title
+        return (f"slices = {self.slices} is of the method 'slices'; the table is made by {title}",)
 
     def task(self) -> Task:
         """The task of a method.

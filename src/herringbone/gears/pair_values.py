@@ -29,7 +29,7 @@ def pair_values(job: GearJob) -> tuple[PairValues, tuple[str, ...]]:
         raise ParameterError(
             f"the pair has halves = {pair.halves}; the component is double helical: halves = 2"
         )
-    notes = (*job.unread, *backlash_notes(job))
+    notes = (*job.unread, *job.unused(), *backlash_notes(job))
     backlash = backlash_of(job)
     if mesh.backlash is None and pair.normal_backlash < _NONE:
         notes += (

@@ -14,6 +14,7 @@ from herringbone.core import ParameterError
 from herringbone.core.places.paths import CACHE_VARIABLE
 from herringbone.gears import GearJob, GearPair, Modification, job_stiffness, stiffness_for
 from herringbone.gears.files.table_file import table_text
+from herringbone.gears.pair_values import pair_values
 from herringbone.gears.stiffness import methods
 from herringbone.gears.stiffness.coupled_slices import CoupledSliceMesh
 from herringbone.gears.stiffness.slices import SliceMesh
@@ -175,3 +176,11 @@ def test_means_of_plain_slices_that_are_off(changes, share):
     means = (table.secant[1:].mean(axis=1) for table in (coupled, plain))
     off = float(np.abs(np.divide(*means) - 1.0).max())
     assert share < off < plain.uncertainty.mean < off + 0.04 * (1.0 + off) + 1e-9
+
+
+def test_slices_that_another_method_does_not_take_are_told():
+    job = GearJob(gear_pair(THESIS), slices=20, method="coupled-slices")
+    said = "slices = 20 is of the method 'slices'; the table is made by coupled slices"
+    assert job.unused() == (said,)
+    assert said in pair_values(job)[1]
+    assert job.unused("slices") == GearJob(job.pair).unused("fe") == ()

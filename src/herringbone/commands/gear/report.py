@@ -66,7 +66,8 @@ def gear(
     written = [str(path) for path in _write(stiffness, loaded, folder, file.stem)]
     if as_json:
         return json.dumps({**gear_figures(job, stiffness, loaded), "files": written})
-    notes = [f"note: {note}" for note in (*job.unread, *backlash_notes(job))]
+    said = (*job.unread, *job.unused(method), *backlash_notes(job))
+    notes = [f"note: {note}" for note in said]
     lines = [gear_tables(job, stiffness, loaded), "", *notes, f"Files: {', '.join(written)}"]
     if job.pair.halves == 2:
         lines.append(f"In a gearbox: herringbone run SYSTEM --gear {file}")
