@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from herringbone.commands.gear import report
 from herringbone.commands.gear.report import gear
 from herringbone.commands.main import main
 from herringbone.components.resources.stiffness_table import read_stiffness_table
@@ -133,6 +134,16 @@ def test_table_is_that_of_the_method(thin, tmp_path):
     ) in text
     expected = table_text(stiffness_for(job))
     assert (tmp_path / "mesh_stiffness.csv").read_text(encoding="utf-8") == expected
+
+
+def test_a_face_too_narrow_for_slices_is_refused_before_the_table(tmp_path, capsys, monkeypatch):
+    """The meshing impact takes their calibration, whatever the method of the table."""
+    monkeypatch.setattr(report, "stiffness_for", None)
+    file = tmp_path / "narrow.toml"
+    text = THESIS.read_text(encoding="utf-8")
+    file.write_text(re.sub('face_width = ".*"', 'face_width = "6 mm"', text), encoding="utf-8")
+    assert main(["gear", str(file), "--method", "fe", "-o", str(tmp_path / "out")]) == 2
+    assert "[table.calibration] slices = 1.0" in capsys.readouterr().err
 
 
 def test_loaded_pair(tmp_path, capsys):

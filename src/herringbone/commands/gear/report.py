@@ -59,6 +59,7 @@ def gear(
         job = GearJob(**{**vars(job), "torque": torque})
     conditions = conditions or Conditions()
     check_conditions(job, conditions)
+    job.task().calibration_of("slices")  # of the impact: refused before a table takes its time
     stiffness = stiffness_for(job, method, progress)
     mesh = METHODS[chosen_method(job.method if method is None else method)].mesh(job.task(), silent)
     loaded = loaded_figures(job, mesh, stiffness, conditions)
