@@ -1,12 +1,19 @@
 """Nested systems of an SSP 1.0 file as one flat system, which the reader knows."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from copy import deepcopy
 from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import StructureError
 from herringbone.core.names import is_identifier
-from herringbone.cosim.ssp.format import NAMESPACES, PARTS_ANNOTATION, local_name, qualified
+from herringbone.cosim.ssp.format import (
+    NAMESPACES,
+    PARTS_ANNOTATION,
+    SUPPRESS_CONVERSION,
+    local_name,
+    qualified,
+    suppresses_conversion,
+)
 
 Refusal = Callable[[str], StructureError]
 _SEPARATOR = "__"
@@ -22,7 +29,8 @@ def flattened(system: Element, refusal: Refusal) -> Element:
     through the connectors of the systems between.
 
     Raises:
-        StructureError: a nested system has values, or a connection leads to no component.
+        StructureError: a nested system has values, a connector of it has two sources, or a
+            connection leads to no component.
     """
     elements = system.find("ssd:Elements", NAMESPACES)
     if elements is None or not any(local_name(child) == "System" for child in elements):
@@ -77,19 +85,21 @@ def _links(system: Element, path: str) -> Iterator[Element]:
 def _connections(system: Element, components: set[str], refusal: Refusal) -> Iterator[Element]:
     """Connections of components and of the whole system, followed through connectors of others."""
     links = list(_links(system, ""))
-    arriving = {(x.get("endElement"), x.get("endConnector")): x for x in links}
+    arriving = _arriving(links, components, _nested(system, ""), refusal)
     for link in links:
         if link.get("endElement") not in {*components, _OUTSIDE}:
             continue
         found, seen = link, 1
         while (start := found.get("startElement")) not in {*components, _OUTSIDE}:
-            before = arriving.get((start, found.get("startConnector")))
+            before = arriving.get((str(start), found.get("startConnector", "")))
             if before is None or seen > len(links):
                 raise refusal(
                     f"connection '{link.get('endElement')}.{link.get('endConnector')}': no output "
                     "of a component arrives there"
                 )
             link.extend(child for child in before)
+            if suppresses_conversion(before):
+                link.set(SUPPRESS_CONVERSION, "true")
             found, seen = before, seen + 1
         for key in ("startElement", "startConnector"):
             link.set(key, found.get(key, ""))
@@ -97,6 +107,35 @@ def _connections(system: Element, components: set[str], refusal: Refusal) -> Ite
             if link.get(f"{end}Element") == _OUTSIDE:
                 del link.attrib[f"{end}Element"]
         yield link
+
+
+def _nested(system: Element, path: str) -> Iterator[str]:
+    """Flat names of all nested systems."""
+    for child in system.iterfind("ssd:Elements/ssd:System", NAMESPACES):
+        inner = f"{path}.{child.get('name', '')}" if path else child.get("name", "")
+        yield _flat(inner)
+        yield from _nested(child, inner)
+
+
+def _arriving(
+    links: Iterable[Element], components: set[str], nested: Iterable[str], refusal: Refusal
+) -> dict[tuple[str, str], Element]:
+    """What arrives at each connector of a nested system; components are checked with their FMUs."""
+    systems, found = set(nested), dict[tuple[str, str], Element]()
+    for link in links:
+        element, connector = end = link.get("endElement", ""), link.get("endConnector", "")
+        if element in {*components, _OUTSIDE}:
+            continue
+        if element not in systems:
+            raise refusal(f"connection '{element}.{connector}': there is no component '{element}'")
+        if (other := found.setdefault(end, link)) is not link:
+            first, second = (
+                f"'{x.get('startElement')}.{x.get('startConnector')}'" for x in (other, link)
+            )
+            raise refusal(
+                f"connector '{element}.{connector}' has two sources: {first} and {second}"
+            )
+    return found
 
 
 def _annotate(system: Element, paths: dict[str, str]) -> None:

@@ -27,6 +27,7 @@ NAMESPACES: Final = {
 CHANNELS_ANNOTATION: Final = "herringbone.channels"
 PARTS_ANNOTATION: Final = "herringbone.parts"
 """Paths of parts whose names are flat in the file, by these names."""
+SUPPRESS_CONVERSION: Final = "suppressUnitConversion"
 
 
 def is_ssp(path: Path) -> bool:
@@ -81,3 +82,8 @@ def qualified(tag: str) -> str:
 def local_name(element: Element) -> str:
     """Name of an element without its namespace."""
     return element.tag.rpartition("}")[2]
+
+
+def suppresses_conversion(connection: Element) -> bool:
+    """True if a connection asks that units are not converted."""
+    return connection.get(SUPPRESS_CONVERSION, "false").strip() not in {"false", "0"}

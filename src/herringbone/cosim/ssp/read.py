@@ -24,9 +24,11 @@ from herringbone.cosim.ssp.format import (
     FMU_TYPE,
     NAMESPACES,
     PARTS_ANNOTATION,
+    SUPPRESS_CONVERSION,
     local_name,
     qualified,
     read_structure,
+    suppresses_conversion,
     unpack,
 )
 from herringbone.cosim.ssp.parameters import parameters, value_of
@@ -176,8 +178,8 @@ class _Reader(Content):
             for child in element:
                 if local_name(child) not in {"ConnectionGeometry", "Annotations"}:
                     raise self.refusal(f"{where}: {local_name(child)} is not supported")
-            if element.get("suppressUnitConversion", "false").strip() not in {"false", "0"}:
-                raise self.refusal(f"{where}: suppressUnitConversion is not supported")
+            if suppresses_conversion(element):
+                raise self.refusal(f"{where}: {SUPPRESS_CONVERSION} is not supported")
             first, second = (
                 self.path_here(f"{part}.{name}") if part is not None else Outside(str(name), "")
                 for part, name in ends

@@ -78,7 +78,7 @@ def test_nested_systems_stay_so_and_are_wired_alike(system, fmus, tmp_path):
 
 
 def test_nested_systems_are_read_again(system, fmus, tmp_path):
-    """Paths, values and connections; a connector that nothing arrives at is refused."""
+    """Paths, values and connections."""
     whole, file = nested(system), tmp_path / "nested.ssp"
     write_ssp(whole, fmus, file, step=1e-5, t_end=0.25, nested=True)
     found = read_ssp(file)
@@ -88,12 +88,44 @@ def test_nested_systems_are_read_again(system, fmus, tmp_path):
     assert set(found.connections) == set(whole.connections)
     for part in whole.parts:
         assert found.part(part.name).values == part.values
-    folder = tmp_path / "unpacked"
+
+
+INTO_BOX = 'endElement="box" endConnector="right__f" />'
+FROM_Z = '<ssd:Connection startElement="z" startConnector="port.s" '
+REFUSED = {
+    "no source": (
+        'endConnector="right__f"',
+        'endConnector="other"',
+        "'box__right.f': no output of a component arrives",
+    ),
+    "no such end": (
+        INTO_BOX,
+        f'{INTO_BOX}{FROM_Z}endElement="bb" endConnector="f" />',
+        r"connection 'bb\.f': there is no component 'bb'",
+    ),
+    "two sources": (
+        INTO_BOX,
+        f"{INTO_BOX}{FROM_Z}{INTO_BOX}",
+        r"connector 'box\.right__f' has two sources: 'far\.\S+' and 'z\.port\.s'",
+    ),
+    "outer half without conversion": (
+        INTO_BOX,
+        INTO_BOX.replace("/>", 'suppressUnitConversion="true" />'),
+        r"- 'box__right\.f': suppressUnitConversion is not supported",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_connections_that_would_be_lost_are_refused(system, fmus, tmp_path, case):
+    """Each would leave a connection out, or one of its properties, without a word."""
+    old, new, message = REFUSED[case]
+    file, folder = tmp_path / "nested.ssp", tmp_path / "unpacked"
+    write_ssp(nested(system), fmus, file, step=1e-5, t_end=0.25, nested=True)
     with zipfile.ZipFile(file) as archive:
         archive.extractall(folder)
     text = (folder / SSD).read_text(encoding="utf-8")
-    cut = text.replace('endConnector="right__f"', 'endConnector="other"')
-    assert cut != text
-    (folder / SSD).write_text(cut, encoding="utf-8")
-    with pytest.raises(StructureError, match=r"'box__right.f': no output of a component arrives"):
+    assert old in text
+    (folder / SSD).write_text(text.replace(old, new), encoding="utf-8")
+    with pytest.raises(StructureError, match=message):
         read_ssp(folder)
