@@ -17,6 +17,7 @@ from herringbone.core.places.part_path import PartPath
 from herringbone.core.reading.numbers import number
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.variables import read_variables
+from herringbone.cosim.ssp.connector_units import ConnectorUnits
 from herringbone.cosim.ssp.content import Content
 from herringbone.cosim.ssp.flatten import flattened
 from herringbone.cosim.ssp.format import (
@@ -92,6 +93,7 @@ class _Reader(Content):
         if element.find("ssd:SignalDictionaries", NAMESPACES) is not None:
             raise self.refusal("signal dictionaries are not supported; connect components directly")
         element = flattened(element, self.refusal)
+        units = ConnectorUnits(root, self)
         name = self.renamed(element.get("name") or root.get("name") or self.file.stem, "system")
         self.name_components(element)
         parts: list[PartSpec] = []
@@ -99,9 +101,11 @@ class _Reader(Content):
         for child in element.iterfind("ssd:Elements/*", NAMESPACES):
             part, part_variables = self.part(child)
             parts.append(part)
+            units.take(child, part.name, part_variables)
             variables |= {f"{part.name}.{n}": v for n, v in part_variables.items()}
         values = self.values(element, "the system", variables)
         ends = list(self.connections(element))
+        units.check(ends, variables)
         ports = self.ports(ends)
         system = System(
             name,

@@ -7,8 +7,6 @@ from support.foreign.described_fmus import ELEMENT, SSD, make_fmu
 
 from herringbone.core import FmuError, HerringboneError, StructureError
 from herringbone.cosim.ssp.read import read_ssp
-from herringbone.cosim.ssp.write import write_ssp
-from herringbone.cosim.structure.system import PartSpec, System
 
 BINDING = (
     "<ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>"
@@ -81,6 +79,11 @@ REFUSED_STRUCTURES = {
         "<ssd:Elements>",
         BINDING.format(REAL.format("middle.mass", "1")) + "<ssd:Elements>",
         "has no part 'middle'",
+    ),
+    "unit of a connector": (
+        'unit="N"',
+        'unit="kN"',
+        "component 'left', connector 'f': unit 'kN' is not 'N' of the FMU's variable",
     ),
     "malformed": ("</ssd:Elements>", "", "is not well-formed"),
     "entity": (
@@ -178,10 +181,3 @@ def test_file_without_structure_is_refused(tmp_path):
         archive.writestr("a.txt", "")
     with pytest.raises(StructureError, match=r"contains no SystemStructure\.ssd"):
         read_ssp(file)
-
-
-def test_units_with_two_meanings_are_refused(fmus, tmp_path):
-    fmus["other"] = make_fmu(tmp_path / "other.fmu", ELEMENT, newton='kg="1" m="2" s="-2"')
-    system = System("two", "", (PartSpec("first", "element"), PartSpec("second", "other")), ())
-    with pytest.raises(StructureError, match=r"second\.force: unit 'N' is defined otherwise"):
-        write_ssp(system, fmus, tmp_path / "x.ssp", step=1e-5, t_end=1.0)

@@ -1,0 +1,76 @@
+"""Units in SSP 1.0 files: what connectors declare agrees with the FMUs, or is refused."""
+
+import zipfile
+
+import pytest
+from support.foreign.described_fmus import ELEMENT, SSD, make_fmu
+
+from herringbone.core import StructureError
+from herringbone.cosim.ssp.read import read_ssp
+from herringbone.cosim.ssp.write import write_ssp
+from herringbone.cosim.structure.system import PartSpec, System
+
+TWO_WAYS = ELEMENT.replace(' unit="N"', "").replace("force", "y").replace(' unit="m"', "")
+UNITS = (
+    '<ssd:Units><ssc:Unit name="rpm"><ssc:BaseUnit rad="1" s="-1" factor="0.1047"/></ssc:Unit>'
+    '<ssc:Unit name="r/min"><ssc:BaseUnit rad="1" s="-1" factor="0.1047" m="0"/></ssc:Unit>'
+    '<ssc:Unit name="rad/s"><ssc:BaseUnit rad="1" s="-1"/></ssc:Unit></ssd:Units>'
+)
+
+
+@pytest.fixture
+def with_units(tmp_path):
+    """A file of two FMUs without units, whose connectors declare some."""
+
+    def write(output, input_):
+        fmu = make_fmu(tmp_path / "plain.fmu", TWO_WAYS)
+        parts = tuple(PartSpec(name, component="plain") for name in "ab")
+        file = tmp_path / "plain.ssp"
+        system = System("plain", "", parts, (("a.y", "b.s"),))
+        write_ssp(system, {"plain": fmu}, file, step=1e-3, t_end=1.0)
+        folder = tmp_path / "plain"
+        with zipfile.ZipFile(file) as archive:
+            archive.extractall(folder)
+        text = (folder / SSD).read_text(encoding="utf-8")
+        for kind, unit in (("output", output), ("input", input_)):
+            old = f'kind="{kind}">\n            <ssc:Real />'
+            assert old in text
+            text = text.replace(old, old.replace(" />", f' unit="{unit}" />'))
+        text = text.replace("<ssd:DefaultExperiment", f"{UNITS}<ssd:DefaultExperiment")
+        (folder / SSD).write_text(text, encoding="utf-8")
+        return folder
+
+    return write
+
+
+def test_units_of_connectors_that_differ_are_refused(with_units):
+    """FMUs without units: another master would convert, this one has nothing to convert by."""
+    said = r"connection 'a\.y' - 'b\.s': units differ, 'rpm' and 'rad/s'"
+    with pytest.raises(StructureError, match=said):
+        read_ssp(with_units("rpm", "rad/s"))
+
+
+@pytest.mark.parametrize("units", [("rpm", "rpm"), ("rpm", "r/min"), ("rpm", "")])
+def test_equal_units_of_connectors_are_taken(with_units, units):
+    """By name or by definition; an end without any is not known."""
+    assert read_ssp(with_units(*units)).connections == (("a.y", "b.s"),)
+
+
+def test_definition_of_a_unit_is_of_numbers(edited):
+    with pytest.raises(StructureError, match="unit 'N': 'one' is not a whole number"):
+        read_ssp(edited('kg="1" m="1"', 'kg="one" m="1"'))
+
+
+def test_unit_of_a_connector_under_another_name(edited):
+    """`newton` is defined as the FMU defines `N`."""
+    folder = edited('name="N"', 'name="newton"')
+    text = (folder / SSD).read_text(encoding="utf-8")
+    (folder / SSD).write_text(text.replace('unit="N"', 'unit="newton"'), encoding="utf-8")
+    assert ("spring.force", "left.f") in read_ssp(folder).connections
+
+
+def test_units_with_two_meanings_are_refused(fmus, tmp_path):
+    fmus["other"] = make_fmu(tmp_path / "other.fmu", ELEMENT, newton='kg="1" m="2" s="-2"')
+    system = System("two", "", (PartSpec("first", "element"), PartSpec("second", "other")), ())
+    with pytest.raises(StructureError, match=r"second\.force: unit 'N' is defined otherwise"):
+        write_ssp(system, fmus, tmp_path / "x.ssp", step=1e-5, t_end=1.0)
