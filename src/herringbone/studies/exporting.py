@@ -92,6 +92,11 @@ def export(
             f"of .ssp files; leave out {option('as_fmu')}",
             {"step": step is not None, "nested": nested, "python": python},
         )
+        if output and Path(output).suffix == ".ssv":
+            _refuse(
+                "of FMUs; a .ssv file has start values alone, leave it out",
+                {"platforms": platforms, "fmi": fmi != 2},
+            )
         if plan:
             scene = _planned(system, scene, own, told)
         file = export_fmu(

@@ -71,6 +71,26 @@ def test_wrong_exports_are_told_in_the_words_of_each(asked, options, said, capsy
     assert f"--{name}: {said}" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("asked", "options"),
+    [({"platforms": ["all"]}, ["--platforms", "all"]), ({"fmi": 3}, ["--fmi", "3"])],
+)
+def test_start_values_alone_have_no_binaries(asked, options, capsys, tmp_path):
+    """They said "built, not run"."""
+    (name,), file = asked, tmp_path / "x.ssv"
+    with pytest.raises(hb.HerringboneError, match=f"^{name}: of FMUs; a .ssv file has start"):
+        hb.export("gearbox", file, as_fmu=True, **asked)
+    assert main(["export", "gearbox", "--as-fmu", "-o", str(file), *options]) == BAD_INPUT
+    assert f"--{name}: of FMUs" in capsys.readouterr().err
+    assert not file.exists()
+
+
+@pytest.mark.parametrize("file", ["x.ssv", "x.fmu", "x.ssp"])
+def test_unknown_platform_is_told(file, tmp_path):
+    with pytest.raises(hb.HerringboneError, match=r"^platform 'windoze' is unknown; there are: "):
+        hb.export("gearbox", tmp_path / file, as_fmu=file != "x.ssp", platforms=["windoze"])
+
+
 def test_flanges_are_checked_by_name():
     with pytest.raises(hb.HerringboneError, match=r"^wheel = 'force': it takes torque or"):
         hb.export("gearbox", as_fmu=True, wheel="force")

@@ -12,6 +12,7 @@ from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.native import PLATFORMS, build_native_fmus
+from herringbone.fmi.native.platforms import platform_of
 from herringbone.fmi.native.started import build_started_fmu
 from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.exporting.carried_files import carried_files, refuse_files, without_files
@@ -101,8 +102,12 @@ def _refuse_of_native(chosen: bool, files: bool) -> None:
 
 
 def chosen_platforms(names: Sequence[str]) -> list[str]:
-    """Names of platforms that are asked for; all of them for "all" alone."""
-    return list(PLATFORMS) if list(names) == [ALL] else list(names)
+    """Names of platforms that are asked for; all of them for "all" alone.
+
+    Raises:
+        ParameterError: there is no platform of that name.
+    """
+    return list(PLATFORMS) if list(names) == [ALL] else [platform_of(name).name for name in names]
 
 
 def untested(platforms: Sequence[str]) -> list[str]:
