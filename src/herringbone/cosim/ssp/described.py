@@ -17,8 +17,8 @@ from herringbone.cosim.fmu.variables import read_variables
 from herringbone.cosim.structure.system import Values
 
 _TO_TEXT: dict[str, Callable[[Any], str]] = {
-    "Real": lambda value: repr(float(value)),
-    "Integer": lambda value: repr(int(value)),
+    "Real": repr,
+    "Integer": repr,
     "Boolean": lambda value: "true" if value else "false",
     "String": str,
 }
@@ -47,7 +47,8 @@ class DescribedPart:
         """Name, FMI type and text of each value.
 
         Raises:
-            ParameterError: there is no such variable, or its type has no place in SSP 1.0.
+            ParameterError: there is no such variable, its type has no place in SSP 1.0, or the
+                value does not fit into it, as in a run.
         """
         types = {v.name: v.type for v in self.model.modelVariables}
         for name, value in self.values.items():
@@ -59,20 +60,12 @@ class DescribedPart:
                     f"{self.name}.{name} = {value!r}: SSP 1.0 has no value of type {kind}, and its "
                     "masters run FMI 2.0; replace this part by an FMU 2.0, or drop the value"
                 )
-            if kind == "Enumeration":
-                yield name, kind, self._item(name, value)
-                continue
-            if kind not in _TO_TEXT or (kind == "String") != isinstance(value, str):
-                raise ParameterError(
-                    f"{self.name}.{name} = {value!r}: this {kind} has no place in an SSP 1.0 file"
-                )
-            yield name, kind, _TO_TEXT[kind](value)
-
-    def _item(self, name: str, value: float | str) -> str:
-        """What an Enumeration is set to: the name of the item, as SSP asks."""
-        items = self.variables[name].items
-        number = as_value("Enumeration", value, f"{self.name}.{name} = {value!r}", items)
-        return next((item for item, known in items if known == number), str(number))
+            items = self.variables[name].items
+            found = as_value(kind, value, f"{self.name}.{name} = {value!r}", items)
+            if kind == "Enumeration":  # by the item's name, as SSP asks
+                yield name, kind, next((i for i, known in items if known == found), str(found))
+            else:
+                yield name, kind, _TO_TEXT[kind](found)
 
     @property
     def values_file(self) -> str:
