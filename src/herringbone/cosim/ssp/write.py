@@ -13,6 +13,7 @@ Connectors are the connected variables and all outputs that this master would re
 stay out, so that other masters hold inputs over a step.
 """
 
+import re
 import zipfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -33,6 +34,8 @@ PARAMETER_SET = "start"
 """Name of the parameter set of every component; ecos wants it in `init(parameter_set=...)`."""
 _TIMESTAMP = (1980, 1, 1, 0, 0, 0)
 _PERMISSIONS = 0o644 << 16
+_PLAIN = re.compile(r"[A-Za-z0-9._-]+", re.ASCII)
+"""Names of files that are the same in a URI."""
 
 
 def write_ssp(
@@ -79,15 +82,20 @@ def _fmu(fmus: Mapping[str, Path], spec: PartSpec) -> Path:
 
 
 def _resource_names(parts: Sequence[DescribedPart]) -> dict[Path, str]:
-    """Place of each FMU file in the .ssp; instances of one file share it."""
+    """Place of each FMU file in the .ssp; instances of one file share it.
+
+    Sources are URIs, in which '#', '?' and '%' mean something: a file whose name is not plain is
+    called as the first part that uses it.
+    """
     labels = [part.label for part in parts]
     if twice := [label for label in labels if labels.count(label) > 1]:
         raise StructureError(f"two parts are called {twice[0]} in a flat file; rename one")
     names: dict[Path, str] = {}
     for part in parts:
         if part.file not in names:
-            name = f"resources/{part.file.name}"
-            names[part.file] = f"resources/{part.label}.fmu" if name in names.values() else name
+            name, own = f"resources/{part.file.name}", f"resources/{part.label}.fmu"
+            taken = name in names.values() or not _PLAIN.fullmatch(part.file.name)
+            names[part.file] = own if taken else name
     if len(set(names.values())) < len(names):
         raise StructureError("two FMU files want the same name; rename one of them")
     return names

@@ -41,6 +41,16 @@ def test_foreign_files_with_the_same_name_are_kept_apart(system, fmus, ssp, tmp_
     assert right.read_bytes() == other.read_bytes()
 
 
+@pytest.mark.parametrize("name", ["my#body.fmu", "body 100%25.fmu", "which?.fmu", "kör per.fmu"])
+def test_fmu_files_of_any_name_are_found_again(system, fmus, tmp_path, name):
+    """In the file they have plain names, which are the same in a URI."""
+    other, file = make_fmu(tmp_path / name, BODY), tmp_path / "x.ssp"
+    write_ssp(system.with_fmu("right", other), fmus, file, step=1e-5, t_end=0.25)
+    found = read_ssp(file).part("right").fmu
+    assert found.name == "right.fmu"
+    assert found.read_bytes() == other.read_bytes()
+
+
 def test_same_system_gives_same_bytes(ssp, system, fmus, tmp_path):
     again = tmp_path / "again.ssp"
     write_ssp(system, fmus, again, step=1e-5, t_end=0.25)
@@ -79,13 +89,25 @@ def test_unconnected_outputs_are_connectors_and_inputs_are_not(ssp):
     ("values", "message"),
     [
         ({"left.weight": 1.0}, "left: body.fmu has no variable 'weight'"),
-        ({"left.table": 1.0}, "left.table = 1.0: this String has no place"),
-        ({"left.mass": "heavy"}, "left.mass = 'heavy': this Real has no place"),
+        ({"left.table": 1.0}, "left.table = 1.0: it takes a String"),
+        ({"left.mass": "heavy"}, "left.mass = 'heavy': it takes a Real, a number"),
+        ({"left.count": 2.7}, "left.count = 2.7: its type is Integer, it takes a whole number"),
+        ({"left.active": "no"}, "left.active = 'no': it takes a Boolean, true or false"),
     ],
 )
 def test_wrong_values_are_refused_in_writing(system, fmus, tmp_path, values, message):
     with pytest.raises(ParameterError, match=message):
         write_ssp(system.with_values(values), fmus, tmp_path / "x.ssp", step=1e-5, t_end=1.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "written"), [("false", 0), ("true", 1), (True, 1), (0.0, 0), (1, 1)]
+)
+def test_booleans_are_taken_as_in_a_run(system, fmus, tmp_path, given, written):
+    """Also as words, which were refused."""
+    file = tmp_path / "x.ssp"
+    write_ssp(system.with_values({"left.active": given}), fmus, file, step=1e-5, t_end=1.0)
+    assert read_ssp(file).part("left").values["active"] == written
 
 
 def test_value_of_an_fmu_3_is_refused_with_the_remedy(fmi3_fmus):
