@@ -6,6 +6,7 @@ from typing import Final
 from xml.etree.ElementTree import Element
 
 from herringbone.core import StructureError
+from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.places.files import is_file, is_folder
 from herringbone.core.places.temporary import make_temporary_folder, remove_temporary_folder
 from herringbone.core.reading.archives import open_archive
@@ -28,6 +29,8 @@ CHANNELS_ANNOTATION: Final = "herringbone.channels"
 PARTS_ANNOTATION: Final = "herringbone.parts"
 """Paths of parts whose names are flat in the file, by these names."""
 SUPPRESS_CONVERSION: Final = "suppressUnitConversion"
+_unpacked: Remembered[Path] = Remembered(256)
+"""By content; a folder holds a descriptor."""
 
 
 def is_ssp(path: Path) -> bool:
@@ -36,7 +39,9 @@ def is_ssp(path: Path) -> bool:
 
 
 def unpack(file: Path) -> Path:
-    """Folder with the content of an .ssp file, removed when the process ends.
+    """Folder with the content of an .ssp file, which is not changed; removed when the process ends.
+
+    A content that was unpacked before has its folder already.
 
     Args:
         file: an .ssp file; a folder is taken as it is.
@@ -46,10 +51,18 @@ def unpack(file: Path) -> Path:
     """
     if is_folder(file):
         return file
+    return _unpacked(content_key(file), lambda: _unpack(file))
+
+
+def _unpack(file: Path) -> Path:
     with open_archive(file, "an .ssp file", StructureError) as archive:
         folder = make_temporary_folder()
-        atexit.register(remove_temporary_folder, folder)
-        archive.extract(folder)
+        try:
+            archive.extract(folder)
+        except BaseException:
+            remove_temporary_folder(folder)
+            raise
+    atexit.register(remove_temporary_folder, folder)
     return folder
 
 

@@ -1,12 +1,17 @@
 """SSP 1.0 files that are read: whose values win, and what is refused by name."""
 
+import tempfile
 import zipfile
+from shutil import copy
 
 import pytest
 from support.foreign.described_fmus import ELEMENT, SSD, make_fmu
 
 from herringbone.core import FmuError, HerringboneError, StructureError
+from herringbone.core.caching.remembered import Remembered
+from herringbone.cosim.ssp import format as ssp_format
 from herringbone.cosim.ssp.read import read_ssp
+from herringbone.cosim.ssp.write import write_ssp
 
 BINDING = (
     "<ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>"
@@ -162,6 +167,33 @@ def test_entries_outside_the_folder_are_refused(tmp_path, name):
         archive.writestr(name, "")
     with pytest.raises(StructureError, match="would be written outside its folder; refused"):
         read_ssp(file)
+
+
+@pytest.fixture
+def folders(tmp_path, monkeypatch):
+    """Function that gives the folders of the .ssp files that this test unpacked."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(ssp_format, "_unpacked", Remembered(4))
+    return lambda: list(tmp_path.glob("herringbone_run_*"))
+
+
+def test_a_content_is_unpacked_once(ssp, system, fmus, tmp_path, folders):
+    """A folder has a descriptor until the process ends; another content has another folder."""
+    one, again, copied = (read_ssp(file) for file in (ssp, ssp, copy(ssp, tmp_path / "x.ssp")))
+    assert one.parts == again.parts == copied.parts
+    assert len(folders()) == 1
+    write_ssp(system.with_values({"left.mass": 7.0}), fmus, ssp, step=1e-5, t_end=0.25)
+    assert read_ssp(ssp).part("left").values["mass"] == 7.0
+    assert len(folders()) == 2
+
+
+def test_a_damaged_entry_leaves_no_folder(ssp, folders):
+    content = ssp.read_bytes()
+    assert content.count(b"port.s.node1") == 1
+    ssp.write_bytes(content.replace(b"port.s.node1", b"port.s.node2"))
+    with pytest.raises(StructureError, match="cannot be unpacked"):
+        read_ssp(ssp)
+    assert not folders()
 
 
 @pytest.mark.parametrize(
