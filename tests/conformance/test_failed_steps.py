@@ -1,5 +1,7 @@
 """What a step that fails leaves, where steps end, and what is computed at their end."""
 
+import math
+
 import pytest
 from fmpy.fmi1 import FMICallException
 from support.fmus import H, outputs
@@ -61,6 +63,32 @@ def test_no_step_beyond_the_stop_time(fmus, tmp_path):
     with pytest.raises(FMICallException):
         host.step(0.3, 1e-6)
     assert any("ends after the stop time of 0.3 s" in line for line in host.messages)
+
+
+def test_refusals_discard_one_step(fmus, tmp_path):
+    """A step that is too long, a value that is none: what follows has the bits of a plain run."""
+    refused, plain = (Fmi2Host(fmus["drive_motor"], tmp_path / str(k)) for k in range(2))
+    for host in (refused, plain):
+        host.slave.reset()
+        host.slave.setupExperiment(startTime=0.0, stopTime=0.3)
+        host.slave.enterInitializationMode()
+        host.slave.exitInitializationMode()
+        host.set({"flange.tau": 5.0})
+        host.step(0.0, 0.1)
+    with pytest.raises(FMICallException):
+        refused.step(0.1, 1.0)
+    for size in (-0.1, math.nan):
+        with pytest.raises(FMICallException):
+            refused.step(0.1, size)
+    refused.step(0.1, 0.1)
+    plain.step(0.1, 0.1)
+    with pytest.raises(FMICallException):  # of setReal, or of the step after it
+        refused.set({"flange.tau": math.nan})
+        refused.step(0.2, 0.1)
+    for host in (refused, plain):
+        host.step(0.2, 0.1)
+    names = outputs("drive_motor")
+    assert refused.get(*names).tobytes() == plain.get(*names).tobytes()
 
 
 def test_derivatives_of_states_at_the_end_of_a_step(native_fmus, fmi3_fmus, tmp_path):

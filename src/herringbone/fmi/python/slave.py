@@ -131,23 +131,28 @@ class ComponentSlave(GuardedSlave):
     def advance(self, time: float, step_size: float) -> bool:
         """Step from `time` to `time + step_size` [s]; False discards the step.
 
-        One that cannot be computed leaves everything as it was.
+        One that cannot be computed leaves everything as it was: others may follow.
         """
         self._time = time
         if self._failure:
-            return False
+            return self._discarded()
         instance, end = self._instance, time + step_size
         stepping = self._phase is _Phase.STEPPING and 0.0 <= step_size < math.inf
         if not stepping or end > self._stop + _SLACK * (1.0 + abs(self._stop)):
             self._attempt(self._refuse_step, step_size)
-            return False
+            return self._discarded()
         before = instance.block[self._moved].copy()
         if self._kernel(instance.block, instance.work, time, step_size) == 0:
             self._time = end
             return True
         self._attempt(self._explain, step_size)
         instance.block[self._moved] = before
-        self._failure = ""
+        return self._discarded()
+
+    def _discarded(self) -> bool:
+        """False: errors are told by this step, but for those before the end of initialisation."""
+        if self._phase is _Phase.STEPPING:
+            self._failure = ""
         return False
 
     def _refuse_step(self, step_size: float) -> None:
