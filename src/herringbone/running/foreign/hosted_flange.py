@@ -97,7 +97,7 @@ def hosted_flange(fmu: Path, flange: str, host: Host, values: Values | None = No
         with activity(f"identifying {found.tau} of {fmu.name}"):
             start = start_inputs(part, inputs)
             content = started_content(fmu, values or {})
-            signature = signature_of(make(), make, step, content)
+            signature = signature_of(part, make, step, content)
             if signature.kind is Kind.NOISY:
                 raise FmuError(f"{fmu}: {signature.notes[0]}")
             tried: list[HostedFlange] = []

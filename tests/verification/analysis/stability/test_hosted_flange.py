@@ -1,6 +1,7 @@
 """The largest communication step of one FMU at a host: closed forms, and runs of the FMU."""
 
 import json
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -75,6 +76,29 @@ def test_scripts_get_what_the_command_shows(kinds, capsys):
     assert cli.main(["stability", str(file), "--flange", MASS, *options]) == 0
     assert capsys.readouterr().out.strip() == str(found)
     assert found.limits == hosted_flange(file, MASS, HOST).limits
+
+
+def test_every_instance_is_freed(kinds, monkeypatch):
+    """All of them share a folder, which goes when the limits are found."""
+    made, closed = [], []
+
+    @contextmanager
+    def watched(name, file):
+        with many_of(name, file) as new:
+
+            def make():
+                part = new()
+                made.append(part)
+                close = part.close
+                part.close = lambda: (closed.append(part), close())
+                return part
+
+            yield make
+
+    monkeypatch.setattr(module, "many_of", watched)
+    hosted_flange(kinds / "oscillator_mass.fmu", MASS, HOST)
+    assert made
+    assert set(map(id, made)) == set(map(id, closed))
 
 
 def test_shaft_inside(kinds):
