@@ -4,6 +4,10 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from herringbone.core import Outcome, OutcomeKind
+
+HALVED = "the run with half the step"
+
 
 class Verification(NamedTuple):
     """Error of a run, by others with longer or shorter steps.
@@ -36,3 +40,16 @@ class Verification(NamedTuple):
     def missed(self) -> bool:
         """True if the error is above the tolerance that was asked for, or nobody knows it."""
         return self.asked is not None and not self.error <= self.asked
+
+
+def error_unknown(outcome: Outcome, run: str, error: str = "the error") -> str:
+    """A line on an error that is not known, as a run did not end well.
+
+    Args:
+        outcome: of that run.
+        run: which one it is.
+        error: what is not known.
+    """
+    if outcome.kind is OutcomeKind.INTERRUPTED:
+        return f"{error} is not known: {run} was stopped at {outcome.time:g} s"
+    return f"{error} is not known: {run} did not end well: {outcome.message or outcome.kind.value}"

@@ -6,15 +6,17 @@ from typing import NamedTuple
 
 from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
+from herringbone.core import OutcomeKind
 from herringbone.core.energy_report import Verdict
 from herringbone.core.process.activity import activity
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
+from herringbone.result.verification import error_unknown
 from herringbone.running.coupled import Coupled, coupled
 from herringbone.running.coupling_choice import Asked
-from herringbone.running.fused.fused import FusedAsked, fused, verified_by_half
+from herringbone.running.fused.fused import OVER_ALL, FusedAsked, fused, verified_by_half
 from herringbone.running.operating.lean import refuse_lean
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress
@@ -62,6 +64,9 @@ def fused_run(
     result = fused(system, scene, asked, progress, recorded, output)
     if result.outcome.unstable:
         return result
+    if not result.outcome.ended_well:  # who stops a run waits for no other one
+        why = error_unknown(result.outcome, "the run", OVER_ALL)
+        return result.noted(why) if reference or verify else result
     if reference:
         result = compared(result, result, system)
     if verify and result.info.core:
@@ -109,9 +114,13 @@ def coupled_run(
     else:
         found = coupled(system, scene, asked, progress, recorded, output)
     result = found.result
-    if reference:
+    outcome = result.outcome
+    stopped = outcome.kind is OutcomeKind.INTERRUPTED
+    if (verify and not outcome.ended_well) or (reference and stopped):
+        result = result.noted(error_unknown(outcome, "the run"))
+    if reference and not stopped:
         result = compared(result, found.every, system)
-    if verify and not found.recording.outcome.unstable:
+    if verify and outcome.ended_well:
         result = verified(result, system, scene, found, asked, progress)
     elif can_be_verified(system, result, found, asked):
         result = verified_by_other_steps(result, system, scene, found, asked)

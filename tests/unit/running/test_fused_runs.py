@@ -1,6 +1,7 @@
 """Fused runs as a user meets them: results, refusals, interrupts, what stands in the summary."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,9 +9,10 @@ import pytest
 import herringbone as hb
 from herringbone.analysis.twin.fused import measured
 from herringbone.commands.main import main
-from herringbone.core import OutcomeKind, ParameterError, StructureError
+from herringbone.core import Outcome, OutcomeKind, ParameterError, StructureError
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.structure.system_file import read_system
+from herringbone.running.fused import fused
 from herringbone.running.fused.fused import refuse_strangers
 from herringbone.running.reporting.summary import summary_text
 
@@ -102,6 +104,25 @@ def test_half_the_step_over_the_whole_run():
     assert "whole run" in found.verification.how
     assert 1e-5 < found.verification.error < 1e-3
     assert np.isclose(found.verification.step, 5e-5)
+
+
+@pytest.mark.parametrize("stopped", [1, 2])
+def test_no_error_over_the_whole_run_if_a_run_is_interrupted(stopped, monkeypatch):
+    """The first one, after which none with half the step is made, or that one."""
+    marched, made = fused._marched, []
+
+    def one_of_them(*given):
+        made.append(marched(*given))
+        late = len(made) == stopped
+        return replace(made[-1], outcome=Outcome.interrupted(5e-3)) if late else made[-1]
+
+    monkeypatch.setattr(fused, "_marched", one_of_them)
+    found = hb.run("gearbox", fuse=True, t_end=0.01, record_step=1e-4, step=1e-4, verify=True)
+    assert len(made) == stopped
+    assert "whole run" not in found.verification.how
+    which = ("the run", "the run with half the step")[stopped - 1]
+    told = f"the error over the whole run is not known: {which} was stopped at 0.005 s"
+    assert found.info.notes[-1] == told
 
 
 def test_curves_of_the_chart():

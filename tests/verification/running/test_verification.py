@@ -5,12 +5,31 @@ With an error of the power p of the step the difference of both runs is 1 - 2^-p
 """
 
 import json
+from dataclasses import replace
 
 import pytest
 from support.foreign.c_housing import c_housing_fmu
 
 import herringbone as hb
 from herringbone.commands.main import main
+from herringbone.core import Outcome, OutcomeKind
+from herringbone.running import prepared_runs
+from herringbone.running.steps import verification
+
+STOPPED = Outcome.interrupted(4e-4)
+FAILED = Outcome(OutcomeKind.PART_FAILED, 0.0, "drive_motor", "drive_motor failed at 0 s")
+SHORT = {"algorithm": "li:degree=3", "step": 1e-4, "t_end": 1e-3, "fmu": "in-process"}
+
+
+def ending(outcome, module, patch):
+    """Runs that a module makes end in this way."""
+    made = module.coupled
+
+    def run(*given):
+        found = made(*given)
+        return found._replace(result=replace(found.result, outcome=outcome))
+
+    patch.setattr(module, "coupled", run)
 
 
 @pytest.mark.parametrize(
@@ -61,3 +80,25 @@ def test_foreign_parts_and_a_step_that_adapts_are_refused(tmp_path, capsys):
     command += ["--algorithm", "li:tolerance=1e-2", "--verify", "-o", str(tmp_path / "out")]
     assert main(command) == 2
     assert "adapts its step to the tolerance" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("outcome", "why"),
+    [(STOPPED, "was stopped at 0.0004 s"), (FAILED, "did not end well: drive_motor failed at 0 s")],
+)
+def test_a_run_with_half_the_step_that_does_not_end_well_tells_no_error(outcome, why, monkeypatch):
+    ending(outcome, verification, monkeypatch)
+    run = hb.run("test_rig", **SHORT, verify=True)
+    assert run.outcome.completed
+    assert run.verification is None
+    assert run.info.notes[-1] == f"the error is not known: the run with half the step {why}"
+
+
+def test_after_an_interruption_no_other_run_is_made(monkeypatch):
+    """Neither with half the step nor of the twin."""
+    ending(STOPPED, prepared_runs, monkeypatch)
+    monkeypatch.delattr(verification, "coupled")
+    monkeypatch.delattr(prepared_runs, "compared")
+    run = hb.run("test_rig", **SHORT, verify=True, reference=True)
+    assert run.verification is run.error is None
+    assert run.info.notes[-1] == "the error is not known: the run was stopped at 0.0004 s"

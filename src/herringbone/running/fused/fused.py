@@ -19,7 +19,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
 from herringbone.result.budget import BudgetRow
 from herringbone.result.result import Result
-from herringbone.result.verification import Verification
+from herringbone.result.verification import HALVED, Verification, error_unknown
 from herringbone.running.fused.beside import KIND, with_channels
 from herringbone.running.fused.loop import FusedRun
 from herringbone.running.operating.lean import lean_of, refuse_frozen, with_row
@@ -33,6 +33,7 @@ from herringbone.running.reporting.run_result import (
 )
 from herringbone.scenes import Scene
 
+OVER_ALL = "the error over the whole run"
 _trials: Remembered[Measured] = Remembered(64)
 """By system, what is left out, channels that are measured, and what is asked."""
 
@@ -133,7 +134,7 @@ def _grid(scene: Scene) -> Grid:
 def verified_by_half(
     result: Result, system: System, scene: Scene, asked: FusedAsked, progress: bool | Progress
 ) -> Result:
-    """The result with its error by half the step, over the whole run.
+    """The result with its error by half the step, over the whole run; a line if that ends early.
 
     Args:
         result: of the run.
@@ -151,6 +152,8 @@ def verified_by_half(
         columns = core.chosen(asked.record)
         system = with_channels(system, columns)
         recording = _marched(core, steps, columns, system, scene, progress)
+    if not recording.outcome.ended_well:
+        return result.noted(error_unknown(recording.outcome, HALVED, OVER_ALL))
     found = apart(result, make_result(system, scene, KIND, KIND, recording, ()))
     how = "by half the step, over the whole run"
     verification = Verification(found.groups, found.worst, found.worst_difference, step, how)

@@ -15,7 +15,7 @@ from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.algorithms import AUTO, Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
-from herringbone.result.verification import Verification
+from herringbone.result.verification import HALVED, Verification, error_unknown
 from herringbone.running.coupled import Coupled, coupled
 from herringbone.running.coupling_choice import Asked
 from herringbone.running.reporting.progress import Progress
@@ -50,7 +50,7 @@ def verified(
     asked: Asked,
     progress: bool | Progress,
 ) -> Result:
-    """The result with its error by half the step.
+    """The result with its error by half the step; a line where that run does not end well.
 
     Args:
         result: of the run.
@@ -64,6 +64,8 @@ def verified(
     """
     step = 0.5 * found.recording.step
     finer = with_half_step(system, scene, found, asked, progress).result
+    if not finer.outcome.ended_well:
+        return result.noted(error_unknown(finer.outcome, HALVED))
     differences = apart(result, finer, found.exchanged)
     verification = scaled(differences, _LONGER, step, "by half the macro step and inner steps")
     return with_coupling_row(replace(result, verification=verification))
