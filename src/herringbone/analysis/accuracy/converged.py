@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Sequence
 
 from herringbone.analysis.accuracy.error import Rows, errors_by_group
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, OutcomeKind
 from herringbone.core.part import Part, closing_all
 from herringbone.core.places.part_path import in_groups
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
@@ -79,6 +79,8 @@ class Converged:
             grid = Grid(t_end / (rows * pieces), rows * pieces, pieces)
             with closing_all(self._open_parts()) as parts:
                 run = simulate(self._system, parts, self._algorithm, grid)
+            if run.outcome.kind is OutcomeKind.INTERRUPTED:  # with it the chart
+                raise KeyboardInterrupt
             if not run.outcome.reached_end:
                 raise HerringboneError(
                     f"the reference, {self._algorithm} at {grid.step:.3g} s, ended early: "

@@ -158,7 +158,9 @@ def _simulated(
 def _warm(system: System, open_parts: OpenParts, algorithm: Algorithm, grid: Grid) -> None:
     """Load all compiled code, which is no cost of the algorithm; refusals show in the real run."""
     with suppress(HerringboneError):
-        _simulated(system, open_parts, algorithm, Grid(grid.step, _WARM_STEPS, 1))
+        warm = _simulated(system, open_parts, algorithm, Grid(grid.step, _WARM_STEPS, 1))
+        if warm.outcome.kind is OutcomeKind.INTERRUPTED:
+            raise KeyboardInterrupt
 
 
 def _point(
@@ -169,32 +171,36 @@ def _point(
     grid: Grid,
 ) -> tuple[Point, tuple[str, ...]]:
     """One point: the error of a run, and the shortest times of a few."""
-    walls: list[float] = []
-    worked: list[float] = []
-    while True:
-        try:
-            recording = _simulated(system, open_parts, algorithm, grid)
-        except HerringboneError as error:
-            errors = dict.fromkeys(reference.groups, math.inf)
-            point = Point(
-                str(algorithm), grid.step, 1e-3 / grid.step, 0.0, 0.0, 0.0, errors, REFUSED
-            )
-            return point, (f"{algorithm} at {grid.step * 1e6:.4g} us: {error}",)
-        walls.append(recording.wall_seconds)
-        worked.append(recording.cpu_seconds)
-        if not recording.outcome.completed or len(walls) == _REPEATS:
-            break
-        if walls[-1] > _LONG or (len(walls) > 1 and sum(walls) > _ENOUGH):
-            break
-    made = max(recording.macro_steps, 1) * recording.step
+    try:
+        runs = _repeated(system, open_parts, algorithm, grid)
+        last = runs[-1]
+        errors = reference.errors(last)
+    except HerringboneError as error:
+        errors = dict.fromkeys(reference.groups, math.inf)
+        point = Point(str(algorithm), grid.step, 1e-3 / grid.step, 0.0, 0.0, 0.0, errors, REFUSED)
+        return point, (f"{algorithm} at {grid.step * 1e6:.4g} us: {error}",)
     point = Point(
         str(algorithm),
-        recording.step,
-        1e-3 * max(recording.passes.values()) / made,
-        min(walls),
-        min(worked),
-        recording.outcome.time,
-        reference.errors(recording),
-        str(recording.outcome.kind),
+        last.step,
+        1e-3 * max(last.passes.values()) / (max(last.macro_steps, 1) * last.step),
+        min(run.wall_seconds for run in runs),
+        min(run.cpu_seconds for run in runs),
+        last.outcome.time,
+        errors,
+        str(last.outcome.kind),
     )
-    return point, tuple(f"{algorithm}: {note}" for note in recording.notes)
+    return point, tuple(f"{algorithm}: {note}" for note in last.notes)
+
+
+def _repeated(
+    system: System, open_parts: OpenParts, algorithm: Algorithm, grid: Grid
+) -> list[Recording]:
+    """The same run a few times, the fewer the longer it takes; once if it fails."""
+    runs: list[Recording] = []
+    while True:
+        runs.append(_simulated(system, open_parts, algorithm, grid))
+        if not runs[-1].outcome.completed or len(runs) == _REPEATS:
+            return runs
+        walls = [run.wall_seconds for run in runs]
+        if walls[-1] > _LONG or (len(walls) > 1 and sum(walls) > _ENOUGH):
+            return runs

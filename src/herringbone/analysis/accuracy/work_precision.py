@@ -110,6 +110,7 @@ class WorkPrecision(Facts):
         points: one per run, by algorithm, then step.
         notes: downgrades and refusals.
         foreign: parts may run in child processes, whose time is not that of the loop's thread.
+        interrupted: the user stopped it, so that points are missing.
     """
 
     system: str
@@ -121,6 +122,7 @@ class WorkPrecision(Facts):
     points: tuple[Point, ...]
     notes: tuple[str, ...] = ()
     foreign: bool = False
+    interrupted: bool = False
 
     @property
     def algorithms(self) -> tuple[str, ...]:

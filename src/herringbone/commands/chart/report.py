@@ -41,8 +41,7 @@ def charted(
     found = chart(system, progress=sys.stderr.isatty(), **options)
     scene = Path(found.scene).stem
     files = _write(found, folder or Path("results") / f"chart-{found.system}-{scene}")
-    interrupted = any(p.outcome == OutcomeKind.INTERRUPTED for p in found.points)
-    kind = OutcomeKind.INTERRUPTED if interrupted else OutcomeKind.COMPLETED
+    kind = OutcomeKind.INTERRUPTED if found.interrupted else OutcomeKind.COMPLETED
     text = json.dumps({**found.summary(), "results": files}) if as_json else table(found, files)
     return text, kind
 

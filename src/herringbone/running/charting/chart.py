@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +16,7 @@ from herringbone.analysis.accuracy.step_ladder import (
     ladder,
     run_points,
 )
-from herringbone.analysis.accuracy.work_precision import Point, WorkPrecision
+from herringbone.analysis.accuracy.work_precision import WorkPrecision
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
@@ -29,6 +30,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.running.charting.fused_curves import fused_points
+from herringbone.running.charting.kept_points import Kept, Noted, kept_points
 from herringbone.running.foreign.foreign_parts import alike, understood
 from herringbone.running.fused.fused import refuse_strangers
 from herringbone.running.loading import instances, open_parts
@@ -88,6 +90,7 @@ def chart(
 
     Raises:
         HerringboneError: something about the input is wrong.
+        KeyboardInterrupt: before there is any point; later the points so far are returned.
     """
     check_called("progress", progress)
     with (
@@ -117,6 +120,8 @@ def chart(
             else _beside_twin(shown, opened, fuse=fuse)
         )
         told = list(map(str, remarks))
+    points, stopped = found.kept
+    said = (*notes, *why, *found.notes)
     return WorkPrecision(
         structure.name,
         options.name,
@@ -124,9 +129,10 @@ def chart(
         fmu,
         found.modes,
         found.micro_step,
-        tuple(point for point, _ in found.points),
-        tuple(dict.fromkeys([*notes, *why, *found.notes, *said_once(found.points), *told])),
+        tuple(point for point, _ in points),
+        tuple(filter(None, dict.fromkeys([*said, *said_once(points), *told, stopped]))),
         bool(structure.foreign_parts),
+        interrupted=bool(stopped),
     )
 
 
@@ -159,7 +165,7 @@ class _Shown(NamedTuple):
 class _Measured(NamedTuple):
     """Points with notes on them, what the parts themselves resolve, and notes on the reference."""
 
-    points: Sequence[tuple[Point, Sequence[str]]]
+    kept: Kept
     modes: int = 0
     micro_step: float = 0.0
     notes: tuple[str, ...] = ()
@@ -169,20 +175,20 @@ def _beside_finer(shown: _Shown, opened: OpenParts) -> _Measured:
     """Errors against the same parts at shorter steps: foreign ones have no twin."""
     system, algorithms, grids, progress = shown
     finer = Converged(system, opened, grids)
-    found = list(run_points(system, opened, finer, algorithms, grids, progress))
+    found = kept_points(run_points(system, opened, finer, algorithms, grids, progress))
     return _Measured(found, notes=(finer.note,))
 
 
 def _beside_twin(shown: _Shown, opened: OpenParts, *, fuse: bool) -> _Measured:
     system, algorithms, grids, progress = shown
     twin = Reference(system, grids)
-    found = list(run_points(system, opened, twin, algorithms, grids, progress))
-    if fuse:
-        found += [(p, (_SET_UP,)) for p in fused_points(system, twin, grids, progress)]
+    coupled = run_points(system, opened, twin, algorithms, grids, progress)
+    cores = fused_points(system, twin, grids, progress) if fuse else ()
+    found = kept_points(chain(coupled, ((point, (_SET_UP,)) for point in cores)))
     return _Measured(found, *_internals(twin.twin))
 
 
-def said_once(found: Sequence[tuple[Point, Sequence[str]]]) -> Iterator[str]:
+def said_once(found: Sequence[Noted]) -> Iterator[str]:
     """Notes on runs, without the algorithm where those of all algorithms have the same one."""
     by_text: dict[str, list[str]] = {}
     for point, notes in found:

@@ -7,7 +7,9 @@ from herringbone.analysis.accuracy.step_ladder import Progress, Reference
 from herringbone.analysis.accuracy.work_precision import Point
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.measured import DEGREES
+from herringbone.core import OutcomeKind
 from herringbone.cosim.rows.record import Grid
+from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.structure.system import System
 from herringbone.running.fused.loop import FusedRun
 
@@ -32,19 +34,28 @@ def fused_points(
         name = f"fused:degree={degree}"
         for grid in grids:
             progress(name, grid.step)
-            steps = Steps(grid.step, degree, _CLOSE)
-            recording, *runs = (
-                FusedRun(core, steps, columns, grid, None).go(None) for _ in range(1 + _REPEATS)
-            )
-            evaluations = recording.core.evaluations if recording.core else math.nan
-            reached = recording.outcome.time
+            runs = list(_repeated(core, Steps(grid.step, degree, _CLOSE), columns, grid))
+            last = runs[-1]
+            stopped = last.outcome.kind is OutcomeKind.INTERRUPTED
+            timed = [last] if stopped else runs[1:]
+            evaluations = last.core.evaluations if last.core else math.nan
+            reached = last.outcome.time
             yield Point(
                 name,
                 grid.step,
                 1e-3 * evaluations / reached if reached else math.nan,
-                min(run.wall_seconds for run in runs),
-                min(run.cpu_seconds for run in runs),
+                min(run.wall_seconds for run in timed),
+                min(run.cpu_seconds for run in timed),
                 reached,
-                reference.errors(recording),
-                str(recording.outcome.kind),
+                reference.errors(last),
+                str(last.outcome.kind),
             )
+
+
+def _repeated(core: Core, steps: Steps, columns: Sequence[str], grid: Grid) -> Iterator[Recording]:
+    """The run that makes the matrices, and the timed ones, up to an interrupted one."""
+    for _ in range(1 + _REPEATS):
+        run = FusedRun(core, steps, columns, grid, None).go(None)
+        yield run
+        if run.outcome.kind is OutcomeKind.INTERRUPTED:
+            return
