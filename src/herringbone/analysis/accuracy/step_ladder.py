@@ -14,8 +14,10 @@ from herringbone.analysis.accuracy.error import Rows, errors_by_group
 from herringbone.analysis.accuracy.work_precision import REFUSED, Point
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.names import first_of
 from herringbone.core.part import Part, closing_all
 from herringbone.core.places.part_path import in_groups
+from herringbone.core.wording import option
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm
 from herringbone.cosim.layouts.layout import record_names
 from herringbone.cosim.rows.record import Grid
@@ -27,6 +29,8 @@ STEPS = tuple(us * 1e-6 for us in (1, 2, 4, 5, 8, 10, 16, 20, 25, 40, 50, 80, 10
 """Default ladder of communication step sizes [s]."""
 FEWEST_STEPS = 50
 """A run of fewer macro steps than this says nothing and is left out."""
+_NAMED = 5
+"""Steps that a line names, at most."""
 _FAILURES = 2
 _REPEATS = 5
 _ENOUGH = 0.5  # seconds of repeats
@@ -60,6 +64,20 @@ def ladder(steps: Sequence[float], t_end: float) -> list[Grid]:
             f"use steps up to {t_end / FEWEST_STEPS:g} s, or a longer t_end"
         )
     return found
+
+
+def left_out(steps: Sequence[float], t_end: float) -> tuple[str, ...]:
+    """A line on the steps [s] that `ladder` leaves out, as their runs are too short; else none."""
+    short = [f"{step:g}" for step in steps if not _counts(step, t_end)]
+    if not short:
+        return ()
+    line = f"fewer than {FEWEST_STEPS} macro steps in {t_end:g} s, left out"
+    return (f"{option('steps')}: {first_of(short, _NAMED)} s: {line}",)
+
+
+def _counts(step: float, t_end: float) -> bool:
+    """True if a run of this step is long enough to say something."""
+    return step <= t_end and make_grid(t_end, step, step).count >= FEWEST_STEPS
 
 
 class Reference:

@@ -14,6 +14,7 @@ from herringbone.analysis.accuracy.step_ladder import (
     Reference,
     charted_algorithms,
     ladder,
+    left_out,
     run_points,
 )
 from herringbone.analysis.accuracy.work_precision import WorkPrecision
@@ -106,6 +107,8 @@ def chart(
         structure, options, notes = prepared(system, scene, wishes)
         fmu, why = choose_kind(fmu)
         grids = ladder(steps, options.t_end)
+        if tuple(steps) != STEPS:
+            notes = (*notes, *left_out(steps, options.t_end))
         if structure.foreign_parts and tolerances:
             raise ParameterError(
                 "tolerances: with foreign FMUs a curve is drawn over fixed steps only"

@@ -9,7 +9,12 @@ import numpy as np
 import pytest
 
 import herringbone as hb
-from herringbone.analysis.accuracy.step_ladder import FEWEST_STEPS, charted_algorithms, ladder
+from herringbone.analysis.accuracy.step_ladder import (
+    FEWEST_STEPS,
+    charted_algorithms,
+    ladder,
+    left_out,
+)
 from herringbone.analysis.accuracy.variant_labels import variant_labels
 from herringbone.analysis.accuracy.work_precision import Point, WorkPrecision
 from herringbone.commands.chart.report import table
@@ -131,6 +136,10 @@ def test_csv_grammar(tmp_path):
 def test_ladder_leaves_out_short_runs():
     found = ladder((1e-5, 2e-4, 1e-6, 1e-4), 0.005)
     assert [g.count for g in found] == [5000, 500, FEWEST_STEPS]
+    assert left_out((1e-5, 2e-4, 1.0), 0.005) == (
+        "steps: 0.0002, 1 s: fewer than 50 macro steps in 0.005 s, left out",
+    )
+    assert left_out((1e-5, 1e-4), 0.005) == ()
     with pytest.raises(ParameterError, match="longer t_end"):
         ladder((1e-3, 1.0), 0.005)
     with pytest.raises(ParameterError, match="positive"):

@@ -74,6 +74,13 @@ def test_an_interrupted_repeat_of_a_core_is_the_point_s_outcome(repeat, monkeypa
     assert found.notes[-1] == ENDED.format("fused:degree=4", 50)
 
 
+def test_steps_that_were_named_and_are_left_out_are_told():
+    asked = {**SHORT, "steps": [5e-5, 1.25e-4]}
+    notes = hb.chart("gearbox", **asked).notes
+    assert notes[-1] == "steps: 0.000125 s: fewer than 50 macro steps in 0.005 s, left out"
+    assert not [note for note in hb.chart("gearbox", **SHORT).notes if "left out" in note]
+
+
 def test_a_reference_that_fails_refuses_its_point_alone(monkeypatch):
     errors = step_ladder.Reference.errors
 
