@@ -12,6 +12,7 @@ from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import apart, lines_of
 from herringbone.analysis.twin.condensed.lean import WHOLE
 from herringbone.core import ParameterError
+from herringbone.core.places.paths import component_folder
 from herringbone.plotting.studies.plan_chart import plan_chart
 from herringbone.running.operating.lean import lean_of
 from herringbone.running.operating.steady import prepared_solver
@@ -187,6 +188,20 @@ def test_a_transient_is_answered_by_steps_that_half_of_them_confirm():
     assert found.choice.solver == FUSED
     assert 0.0 < found.choice.measured.error <= 1e-3
     assert found.choice.whole
+
+
+def test_files_among_the_values_are_found_from_wherever_the_plan_is(tmp_path, monkeypatch):
+    table = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"
+    (tmp_path / "mine.csv").write_bytes(table.read_bytes())
+    monkeypatch.chdir(tmp_path)
+    operating = Operating(Motion.TRANSIENT)
+    scene = _scene(Ask(("torque",), Form.SIGNAL, 1e-2), t_end=0.01, operating=operating)
+    found = plan("test_rig", scene=scene, values={"gear_mesh.stiffness_table": "mine.csv"})
+    (tmp_path / "plan").mkdir()
+    file = tmp_path / "plan" / "scene.toml"
+    file.write_text(scene_text(found.scene), encoding="utf-8")
+    written = read_scene(file).values
+    assert written["gear_mesh.stiffness_table"] == str(tmp_path / "mine.csv")
 
 
 @pytest.mark.parametrize(

@@ -12,11 +12,10 @@ from herringbone.analysis.twin.fused.core import Core
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core import ParameterError
 from herringbone.core.facts import Facts
-from herringbone.core.places.files import as_texts
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.loading import load_scene, load_system, with_options
 from herringbone.running.operating.at_point import prepared_at
 from herringbone.running.operating.lean import lean_of
 from herringbone.running.operating.questions import questions_of
@@ -134,7 +133,7 @@ def plan(
             fine, questions, asking, lean_of(asking), for_fmu=for_fmu, estimated=estimated
         )
         tolerance, charted = certifier.tolerance, certifier
-    asking = replace(asking, values={**asking.values, **as_texts(values)})
+    asking = with_options(asking, values=values)
     notes = (*found.notes, *said)
     made = _made(found.system, asking, questions, rungs, tolerance, begin, notes)
     if chart and charted is not None:
