@@ -41,6 +41,8 @@ class StudyTable:
     def write(self, folder: Path, *, parquet: bool) -> list[Path]:
         """Write the table and its units; returns the files.
 
+        A Parquet table of before, which may be another one, does not stay.
+
         Raises:
             HerringboneError: a file cannot be written, or pyarrow is not installed.
         """
@@ -55,6 +57,8 @@ class StudyTable:
             files.append(folder / PARQUET)
             with replacing(files[2], text=False) as stream:
                 write_parquet(stream, pieces_of(self.data))
+        else:
+            (folder / PARQUET).unlink(missing_ok=True)
         return files
 
 

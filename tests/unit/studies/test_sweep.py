@@ -101,6 +101,16 @@ def test_only_what_is_missing_is_computed(tmp_path):
     assert log.read_text() == before  # the same chain
 
 
+def test_no_parquet_table_of_another_study_stays(tmp_path):
+    """Not where the new study writes none."""
+    pytest.importorskip("pyarrow")
+    swept(tmp_path, parquet=True)
+    assert len(pd.read_parquet(tmp_path / "table.parquet")) == 24
+    swept(tmp_path, torque=[1.0], overwrite=True)
+    assert not (tmp_path / "table.parquet").exists()
+    assert len(pd.read_csv(tmp_path / "table.csv")) == 8
+
+
 def test_a_failed_point_is_a_row():
     table = swept(torque=[1.0], evaluator=Cheap(refused=300.0)).table
     assert table["outcome"].tolist() == ["completed"] * 2 + ["failed"] + ["completed"] * 5
