@@ -12,6 +12,7 @@ from herringbone.commands.options import (
     replacements,
 )
 from herringbone.commands.output import say, show
+from herringbone.core import HerringboneError, ParameterError
 
 if TYPE_CHECKING:
     from herringbone.running.prepared import Wishes
@@ -31,12 +32,12 @@ def add_options(sub: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Measure, and show the tables, or JSON.
+    """Measure, and show the tables as they come, or JSON of what was measured until an error.
 
     Raises:
         HerringboneError: there is no such part, or something cannot be built or run.
     """
-    from herringbone.core import ParameterError  # noqa: PLC0415 (numba: only when it is needed)
+    from herringbone.result.folder.typed import as_json  # noqa: PLC0415 (numpy: lazy)
 
     chosen = options.part or list(_PARTS)
     if unknown := [name for name in chosen if name not in _PARTS]:
@@ -47,14 +48,21 @@ def run(options: argparse.Namespace) -> int:
             f"bench: other parts and values are measured by '{_RIG}' alone; name it: bench {_RIG}"
         )
     measure = {**_MEASURE, _RIG: lambda: _macro_step(wishes)}
-    tables: list[str] = []
     figures: dict[str, Any] = {}
-    for name in _PARTS:
-        if name in chosen:
-            say(f"measuring {name} ...")
-            table, figures[name] = measure[name]()
-            tables.append(table)
-    show(json.dumps(figures, indent=2) if options.json else "\n\n".join(tables))
+    try:
+        for name in _PARTS:
+            if name in chosen:
+                say(f"measuring {name} ...")
+                table, found = measure[name]()
+                if not options.json:
+                    show(f"\n{table}" if figures else table)
+                figures[name] = found
+    except HerringboneError as error:
+        figures[name] = {"error": str(error)}
+        raise
+    finally:
+        if options.json:
+            show(json.dumps(as_json(figures), indent=2))
     return 0
 
 

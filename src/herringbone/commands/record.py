@@ -52,10 +52,11 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _json(found: "Beside") -> str:
+    from herringbone.result.folder.typed import as_json  # noqa: PLC0415 (numpy: lazy)
     from herringbone.result.tables import records_of  # noqa: PLC0415 (pandas: lazy)
 
     told = {k: v for k, v in asdict(found).items() if k not in {"record", "lines"}}
-    return json.dumps({**told, "lines": records_of(found.lines)})
+    return json.dumps(as_json({**told, "lines": records_of(found.lines)}))
 
 
 def _told(found: "Beside") -> Iterator[str]:

@@ -1,6 +1,7 @@
 """The benchmark measures what it says: the loops move alike, sizes are those of the files."""
 
 import json
+import math
 import os
 import random
 from functools import partial
@@ -9,9 +10,19 @@ import pytest
 from fuzz.campaign import last_commit
 from support.compiler import needs_compiler
 
-from herringbone.benchmarks import coupled_step, fmus, fused_step, loop_profile, macro_step, steady
+from herringbone.benchmarks import (
+    coupled_step,
+    fmus,
+    fused,
+    fused_step,
+    loop_profile,
+    macro_step,
+    steady,
+)
+from herringbone.commands import bench
 from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
+from herringbone.core import HerringboneError
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.fmi.native import build_native_fmus
 from herringbone.running.exporting.parallel_step import PARALLEL
@@ -75,6 +86,29 @@ def test_unknown_part(capsys):
     assert "there is no part 'speed'; it has macro-step" in capsys.readouterr().err
 
 
+def test_what_was_measured_before_an_error_is_shown(capsys, monkeypatch):
+    """The tables, or JSON without NaN, which it has no word for."""
+
+    def failing():
+        raise HerringboneError("no compiler")
+
+    parts = {"accuracy": lambda: ("a table", {"error": math.nan}), "fused": failing}
+    monkeypatch.setattr(bench, "_MEASURE", parts)
+    assert main(["bench", "accuracy", "fused", "--json"]) == 2
+    out, err = capsys.readouterr()
+    assert json.loads(out) == {"accuracy": {"error": "nan"}, "fused": {"error": "no compiler"}}
+    assert err.endswith("herringbone: no compiler\n")
+    assert main(["bench", "accuracy", "fused"]) == 2
+    assert capsys.readouterr().out == "a table\n"
+
+
+def test_a_disturbed_short_loop_is_no_fast_one():
+    """1 s per simulated second and 0.1 s before it; the first short loop takes 0.5 s longer."""
+    late = iter([0.5])
+    loop = lambda t_end: 0.1 + t_end + (next(late, 0.0) if t_end < 1.0 else 0.0)  # noqa: E731
+    assert fused._costs({"loop": loop}, 3) == pytest.approx({"loop": 1.0})
+
+
 def test_steady_states_are_found_and_timed():
     rows = steady.measure(repeats=1, speeds=5)
     assert [row.lost for row in rows] == [0] * len(rows)
@@ -83,9 +117,9 @@ def test_steady_states_are_found_and_timed():
     assert "81 meshes" in rows[-1].name
 
 
-@pytest.mark.parametrize("bench", [fused_step, coupled_step])
-def test_parts_of_a_step_and_their_rest_are_the_whole(bench):
-    whole, *parts = bench.measure(repeats=1, steps=400)
+@pytest.mark.parametrize("module", [fused_step, coupled_step])
+def test_parts_of_a_step_and_their_rest_are_the_whole(module):
+    whole, *parts = module.measure(repeats=1, steps=400)
     assert not whole.within
     assert all(part.within for part in parts)
     summed = [part.seconds for part in parts if not part.name.startswith("in them")]
