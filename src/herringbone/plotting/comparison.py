@@ -4,8 +4,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from herringbone.analysis.accuracy.common_ground import Sides
 from herringbone.analysis.accuracy.comparison import Comparison
-from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum
 from herringbone.plotting.panels import DECADES, HIGHEST, close_up, mark_orders
 from herringbone.plotting.style import (
@@ -44,10 +45,10 @@ def comparison(found: Comparison, highest: float = HIGHEST) -> Figure:
         for side, style in zip((found.first, found.second), _STYLES, strict=True):
             how = {"label": side.name, **style}
             _over_time(left, side.result, column, (factor, shown), found.end, how)
-            _spectrum(right, side.result, column, factor, highest, how)
+            _spectrum(right, side, column, factor, highest, how)
         off = f"{100.0 * float(row.worst_difference):.3g} % apart"
         left.set_title(f"{row.group}: {column}, {off}", fontsize=8.5)
-        _finish(right, found.second.result, shown, highest)
+        _finish(right, found.second, shown, highest)
     figure_legend(figure, panels[0][0])
     return figure
 
@@ -67,21 +68,21 @@ def _over_time(
 
 
 def _spectrum(
-    axes: Axes, result: Result, column: str, factor: float, highest: float, how: dict
+    axes: Axes, side: Sides, column: str, factor: float, highest: float, how: dict
 ) -> None:
-    part = steady_part(result)
+    part = side.part
     if part.rows.stop - part.rows.start < FEWEST_SAMPLES:
         return
-    values = result.data[column].to_numpy(float)[part.rows] * factor
+    values = side.result.data[column].to_numpy(float)[part.rows] * factor
     found = amplitude_spectrum(values, part.sample_step)
     shown = found.frequency <= highest
     floor = float(found.amplitude.max()) * 10.0 ** -(DECADES + 1.0)
     draw_line(axes, found.frequency[shown], np.maximum(found.amplitude[shown], floor), **how)
 
 
-def _finish(axes: Axes, result: Result, unit: str, highest: float) -> None:
+def _finish(axes: Axes, side: Sides, unit: str, highest: float) -> None:
     axes.set_ylabel(f"amplitude [{unit}]")
-    step = steady_part(result).sample_step
+    step = side.part.sample_step
     recorded = 0.5 / step if step else highest
     cut = f", cut at {highest:.0f} of {recorded:.0f} Hz" if highest < recorded else ""
     axes.set_xlabel(f"frequency{cut} [Hz]")
@@ -93,4 +94,4 @@ def _finish(axes: Axes, result: Result, unit: str, highest: float) -> None:
     if top > 0.0:
         axes.set_yscale("log")
         axes.set_ylim(top * 10.0**-DECADES, 1.6 * top)
-    mark_orders(axes, run_mesh_frequency(result), min(highest, recorded))
+    mark_orders(axes, run_mesh_frequency(side.result, part=side.part), min(highest, recorded))

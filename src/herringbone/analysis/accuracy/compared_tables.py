@@ -4,13 +4,13 @@ import math
 from collections.abc import Mapping, Sequence
 from itertools import takewhile
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from herringbone.analysis.accuracy.apart import Apart, differences
-from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.accuracy.common_ground import Sides
+from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitudes_at_multiples
 from herringbone.analysis.figures.standstill import stands_still
 from herringbone.components.registry import COMPONENTS
@@ -24,13 +24,6 @@ ORDERS = 6
 _SAME = 1e-9
 _SAME_VALUE = 1e-7
 """Relative difference of parameters below which they are the same: iterations end about there."""
-
-
-class Sides(NamedTuple):
-    """A run and what it is called in a comparison."""
-
-    name: str
-    result: Result
 
 
 def table_of_groups(
@@ -54,20 +47,20 @@ def table_of_groups(
             "difference": found.groups.get(name, math.nan),
             "worst": alone.worst or columns[0],
             "worst_difference": alone.worst_difference if alone.worst else math.nan,
-            "level_first": _level(ours.result, columns),
-            "level_second": _level(theirs.result, columns),
+            "level_first": _level(ours, columns),
+            "level_second": _level(theirs, columns),
         })  # fmt: skip
     return pd.DataFrame(rows)
 
 
-def _level(result: Result, columns: Sequence[str]) -> float:
+def _level(side: Sides, columns: Sequence[str]) -> float:
     """Root mean square of the alternating parts over the steady part, of all columns together.
 
     0 where nothing turns: what alternates there is rounding.
     """
-    if stands_still(result):
+    if stands_still(side.result):
         return 0.0
-    values = result.data[list(columns)].to_numpy(float)[steady_part(result).rows]
+    values = side.result.data[list(columns)].to_numpy(float)[side.part.rows]
     return float(np.sqrt(values.var(axis=0).mean()))
 
 
@@ -86,7 +79,7 @@ def table_of_columns(
     table = pd.DataFrame({"column": list(shared), "unit": [units[c] for c in shared]})
     table["difference"] = relative
     for name, side in (("first", ours), ("second", theirs)):
-        steady = side.result.data[list(shared)].to_numpy(float)[steady_part(side.result).rows]
+        steady = side.result.data[list(shared)].to_numpy(float)[side.part.rows]
         table[f"mean_{name}"], table[f"rms_{name}"] = steady.mean(axis=0), steady.std(axis=0)
     return table
 
@@ -98,14 +91,14 @@ def table_of_orders(
     names = ["group", "unit", "order", "amplitude_first", "amplitude_second"]
     meshes: list[float] = []
     for side in (ours, theirs):
-        rows, mesh = steady_part(side.result).rows, run_mesh_frequency(side.result)
+        rows, mesh = side.part.rows, run_mesh_frequency(side.result, part=side.part)
         if mesh is None or rows.stop - rows.start < FEWEST_SAMPLES:
             return pd.DataFrame(columns=names), (f"{side.name} has no steady mesh frequency",)
         meshes.append(mesh)
     found = []
     for name, columns in groups.items():
         one, other = (
-            _mesh_amplitudes(side.result, mesh, columns)
+            _mesh_amplitudes(side, mesh, columns)
             for side, mesh in zip((ours, theirs), meshes, strict=True)
         )
         unit = theirs.result.units[columns[0]]
@@ -115,14 +108,14 @@ def table_of_orders(
     return pd.DataFrame(found, columns=names), ()
 
 
-def _mesh_amplitudes(result: Result, mesh: float, columns: Sequence[str]) -> np.ndarray:
+def _mesh_amplitudes(side: Sides, mesh: float, columns: Sequence[str]) -> np.ndarray:
     """Amplitudes (ORDERS, columns) at multiples of the mesh frequency [Hz] in the steady part.
 
     NaN above half the record rate.
     """
-    part = steady_part(result)
-    time = result.data[TIME].to_numpy()[part.rows]
-    values = result.data[list(columns)].to_numpy(float)[part.rows]
+    part, data = side.part, side.result.data
+    time = data[TIME].to_numpy()[part.rows]
+    values = data[list(columns)].to_numpy(float)[part.rows]
     found = amplitudes_at_multiples(time, values, mesh, ORDERS)
     found[mesh * np.arange(1, ORDERS + 1) > 0.5 / part.sample_step] = math.nan
     return found

@@ -1,9 +1,10 @@
 """Comparison of two runs: how far apart they are, and levels and orders side by side.
 
 Differences are those of `apart`, at common times, over the alternating part of the second run.
-Levels are root mean squares of the alternating parts over the steady part, within the time that
-both runs have, of the channels of a group together; orders are amplitudes at multiples of each
-run's own mesh frequency, Hann-windowed, of the channel in which they are largest.
+Levels are root mean squares of the alternating parts over the steady part, from where both runs are
+steady and within the time that both have, of the channels of a group together; orders are
+amplitudes at multiples of each run's own mesh frequency, Hann-windowed, of the channel in which
+they are largest.
 """
 
 from collections.abc import Sequence
@@ -15,15 +16,20 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.accuracy.apart import differences, groups_of
-from herringbone.analysis.accuracy.compared_tables import (
+from herringbone.analysis.accuracy.common_ground import (
     Sides,
+    of_other_units,
+    over_one_part,
+    told_units,
+)
+from herringbone.analysis.accuracy.compared_tables import (
     changed_parameters,
     changed_resources,
     table_of_columns,
     table_of_groups,
     table_of_orders,
 )
-from herringbone.analysis.figures.operating_point import run_mesh_frequency
+from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.standstill import stands_still
 from herringbone.core import ParameterError
 from herringbone.core.facts import Facts
@@ -119,16 +125,21 @@ def compare(first: Result | str | Path, second: Result | str | Path, *patterns: 
     ours, theirs = _side(first), _side(second)
     if ours.name == theirs.name:
         ours, theirs = ours._replace(name="first"), theirs._replace(name="second")
-    shared = [c for c in theirs.result.signals if c in set(ours.result.signals)]
+    apart = of_other_units(ours.result, theirs.result)
+    strange = {column for columns in apart.values() for column in columns}
+    shared = [c for c in theirs.result.signals if c in set(ours.result.signals) - strange]
     if not shared:
-        raise ParameterError(f"{ours.name} and {theirs.name} have no columns in common")
+        line = f"{ours.name} and {theirs.name} have no columns in common"
+        raise ParameterError("; ".join([line, *told_units(apart)]))
     times, values, notes = _at_common_times(ours, theirs, shared)
-    ours, theirs = (_within(side, times[0], times[-1]) for side in (ours, theirs))
+    cut = [_within(side, times[0], times[-1]) for side in (ours, theirs)]
+    (ours, theirs), shorter = over_one_part(cut)
+    notes += told_units(apart) + shorter
     if stands_still(theirs.result):
         values = values[0], np.tile(values[1].mean(axis=0), (len(times), 1))
         notes += (f"nothing turns in {theirs.name}: no difference is over its alternating part",)
     groups = _groups(theirs.result, shared, patterns)
-    notes += _only(ours, theirs, shared)
+    notes += _only(ours, theirs)
     units = theirs.result.units
     found = differences(*values, shared, groups)
     of_groups = table_of_groups(ours, theirs, groups, found, values, shared)
@@ -151,7 +162,8 @@ def _within(side: Sides, begin: float, end: float) -> Sides:
     """The part of a run that is compared: levels and orders of both are over the same time [s]."""
     data = side.result.data
     rows = (data[TIME] >= begin - _SAME * end) & (data[TIME] <= end * (1.0 + _SAME))
-    return side._replace(result=replace(side.result, data=data[rows].reset_index(drop=True)))
+    result = replace(side.result, data=data[rows].reset_index(drop=True))
+    return side._replace(result=result, part=steady_part(result))
 
 
 def _of_phase(groups: pd.DataFrame) -> tuple[str, ...]:
@@ -169,10 +181,11 @@ def _of_phase(groups: pd.DataFrame) -> tuple[str, ...]:
 def _side(given: Result | str | Path) -> Sides:
     if isinstance(given, Result):
         scene = Path(given.info.scene).stem
-        return Sides(
-            f"{given.info.system}-{scene}" if scene else given.info.system, given.uniform()
-        )
-    return Sides(str(given), load(given).uniform())
+        name = f"{given.info.system}-{scene}" if scene else given.info.system
+    else:
+        name, given = str(given), load(given)
+    result = given.uniform()
+    return Sides(name, result, steady_part(result))
 
 
 def _at_common_times(
@@ -220,14 +233,14 @@ def _groups(result: Result, shared: Sequence[str], patterns: Sequence[str]) -> d
     return found
 
 
-def _only(ours: Sides, theirs: Sides, shared: Sequence[str]) -> tuple[str, ...]:
+def _only(ours: Sides, theirs: Sides) -> tuple[str, ...]:
     """What one run alone has, and how their settings differ, in lines."""
     lines = []
-    for side in (ours, theirs):
-        alone = [c for c in side.result.signals if c not in set(shared)]
+    for side, other in ((ours, theirs), (theirs, ours)):
+        alone = [c for c in side.result.signals if c not in set(other.result.signals)]
         if alone:
             lines.append(f"{len(alone)} columns of {side.name} alone, such as {alone[0]}")
-    speeds = [run_mesh_frequency(side.result) for side in (ours, theirs)]
+    speeds = [run_mesh_frequency(side.result, part=side.part) for side in (ours, theirs)]
     if None not in speeds and abs(speeds[0] - speeds[1]) > 1e-4 * speeds[1]:  # type: ignore[operator]
         lines.append(
             f"mesh frequencies are {speeds[0]:.4g} and {speeds[1]:.4g} Hz: differences over time "

@@ -75,7 +75,11 @@ def steady_part(result: Result) -> SteadyPart:
 
 
 def run_mesh_frequency(
-    result: Result, number_of_teeth: float | None = None, *, gear: str = ""
+    result: Result,
+    number_of_teeth: float | None = None,
+    *,
+    gear: str = "",
+    part: SteadyPart | None = None,
 ) -> float | None:
     """Mesh frequency [Hz] at the mean speed of the steady part.
 
@@ -83,13 +87,14 @@ def run_mesh_frequency(
         result: of a run.
         number_of_teeth: of the pinion; the run's own parameter if not given.
         gear: name of the gear pair; the first one if not given.
+        part: in place of the run's own steady part.
 
     Returns:
         None without gear pair of known teeth, when the speed is not steady, or when the steady part
         is shorter than a mesh period (a gear at rest): no order could be told from its neighbours.
     """
     speed = signal(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion", part=gear)
-    part = steady_part(result)
+    part = part or steady_part(result)
     if speed is None or not part.steady:
         return None
     if number_of_teeth is None:

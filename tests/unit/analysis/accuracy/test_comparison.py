@@ -163,6 +163,42 @@ def test_speeds_that_differ_are_said(second):
     assert any("mesh frequencies are 454.5 and 450 Hz" in note for note in notes)
 
 
+def test_columns_of_other_units_are_left_out(second):
+    """Of one that tells no unit nobody knows."""
+    name, silent, *_ = second.channel(FORCES)
+    units = {**second.units, name: "kN", silent: ""}
+    found = hb.compare(replace(second, units=units), second)
+    assert f"{name} is in kN and in N: left out" in found.notes
+    assert not [note for note in found.notes if " alone, such as" in note]
+    assert name not in set(found.columns["column"])
+    assert silent in set(found.columns["column"])
+    groups = found.groups.set_index("group")
+    assert groups.loc[FORCES, "channels"] == len(second.channel(FORCES)) - 1
+    other = replace(second, units=dict.fromkeys(second.units, "kN"))
+    with pytest.raises(ParameterError, match=r"no columns in common; .* in kN and in N: left"):
+        hb.compare(other, second)
+
+
+def test_levels_and_orders_are_over_one_part(second):
+    """What alternates fades in the first half; the other run comes to its speed at 0.15 s."""
+    time = second.data["time"].to_numpy()
+    columns = second.channel(FORCES)
+    mean = second.data[columns].mean()
+    fading = 1.0 + 9.0 * np.maximum(0.0, 1.0 - time / 0.1)
+    loud = second.data.assign(**((second.data[columns] - mean).mul(fading, axis=0) + mean))
+    speed = np.where(time < 0.15, 0.5, 1.0) * second["gear_mesh.pinion.w"]
+    late = second.data.assign(**{"gearbox.gear_mesh.pinion.w": speed})
+    found = hb.compare(replace(second, data=loud), replace(second, data=late))
+    row = found.groups.set_index("group").loc[FORCES]
+    assert row["level_first"] == pytest.approx(row["level_second"], rel=1e-12)
+    orders = found.orders
+    assert orders["amplitude_first"].to_numpy() == pytest.approx(orders["amplitude_second"])
+    assert found.columns["rms_first"].to_numpy() == pytest.approx(found.columns["rms_second"])
+    (note,) = [n for n in found.notes if n.startswith("levels and orders are from 0.15 s")]
+    assert note.endswith("second is steady; first is from 0.04 s on")
+    assert not [n for n in hb.compare(second, second).notes if n.startswith("levels and orders")]
+
+
 def test_what_has_nothing_in_common_is_refused(second):
     with pytest.raises(ParameterError, match="no columns in common"):
         hb.compare(make_foreign_result(), second)
