@@ -14,6 +14,7 @@ from support.cut_off import found_in, killed, killed_at, ran, taken_up, write_of
 
 import herringbone as hb
 from herringbone.commands.main import main
+from herringbone.running import api
 
 
 @pytest.fixture(autouse=True)
@@ -121,8 +122,24 @@ def test_nothing_to_resume(tmp_path, capsys, monkeypatch):
     assert capsys.readouterr().out.startswith("test_rig, scene loaded: completed")
     assert found_in(tmp_path / "whole") == whole
     assert main(["run", "--resume", str(tmp_path / "none")]) == 2
-    assert main(["run", "--resume", str(tmp_path / "whole"), "--t-end=1"]) == 2
+    for more in ("--t-end=1", "--speed=0", "--cells", "--no-pictures", "--overwrite"):
+        assert main(["run", "--resume", str(tmp_path / "whole"), more]) == 2
+        assert "takes all options but --json" in capsys.readouterr().err
     assert main(["run"]) == 2
+
+
+def test_trials_of_the_first_run_are_limited_in_the_resumed_one(tmp_path, monkeypatch):
+    folder, limits = tmp_path / "killed", ["--longest-trial=7", "--most-trial-steps=11"]
+    killed(folder, [*RIG, *limits], monkeypatch, 3)
+    limited = []
+
+    def run(system, **asked):
+        limited.append((asked["longest_trial"], asked["most_trial_steps"]))
+        raise hb.HerringboneError(system)
+
+    monkeypatch.setattr(api, "run", run)
+    assert main(["run", "--resume", str(folder)]) == 2
+    assert limited == [(7, 11)]
 
 
 def test_killed_while_the_report_is_written(tmp_path, monkeypatch):

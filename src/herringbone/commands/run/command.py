@@ -6,14 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from herringbone.commands.options import (
-    ANY_KIND,
     assignments,
     given_by,
     operating_point,
     replacements,
 )
 from herringbone.commands.output import check_writable, limits_told, say, show
-from herringbone.commands.run.options import SLOW, add_options
+from herringbone.commands.run.options import SLOW, add_options, given_options
 from herringbone.core import EXIT_CODES, Outcome, OutcomeKind, ParameterError
 from herringbone.core.places.files import is_folder
 from herringbone.core.process.termination import is_terminating
@@ -101,6 +100,8 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
             probe=not options.no_probe,
             in_process=options.in_process,
             call_deadline=options.call_deadline,
+            longest_trial=options.longest_trial,
+            most_trial_steps=options.most_trial_steps,
             reference=options.reference,
             verify=options.verify,
             fuse=options.fuse,
@@ -124,8 +125,7 @@ def _resumed(options: argparse.Namespace) -> "Result":
     from herringbone.result.folder.checked_store import ReplayError  # noqa: PLC0415
     from herringbone.running.output.resumed import Resumed, to_resume  # noqa: PLC0415
 
-    given = [k for k, v in vars(options).items() if k not in _NOT_KEPT and v and v != ANY_KIND]
-    if given or options.output or options.overwrite:
+    if set(given_options(options)) - {"resume", "json"}:
         raise ParameterError("--resume takes all options but --json from the folder; drop the rest")
     folder = options.resume.absolute()
     found = to_resume(folder)

@@ -37,6 +37,14 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     _add_results(sub)
 
 
+def given_options(options: argparse.Namespace) -> list[str]:
+    """Names of the command's options whose values are other than their defaults."""
+    parser = argparse.ArgumentParser()
+    add_options(parser)
+    defaults = vars(parser.parse_args([]))
+    return [name for name, default in defaults.items() if getattr(options, name) != default]
+
+
 def _add_coupling(sub: argparse.ArgumentParser) -> None:
     """How parts are coupled, and in which steps."""
     sub.add_argument(
