@@ -2,16 +2,23 @@
 
 import argparse
 
-from herringbone.commands.options import given_by
+from herringbone.commands.options import given_by, refuse_given
 from herringbone.commands.output import say
+from herringbone.commands.run.options import given_options
 from herringbone.commands.studies.steady import tell
 from herringbone.core import OutcomeKind, ParameterError
 from herringbone.core.declaring.units import R_MIN
+from herringbone.running.loading import load_scene, load_system
+from herringbone.scenes import Motion
 from herringbone.scenes.asking import Range
 from herringbone.studies.planning.plan import Plan, plan
 from herringbone.studies.planning.text import plan_text
 
 _CHOSEN = ("algorithm", "step", "tolerance", "fuse", "record", "slow", "start", "t_end")
+_OF_RUNS = (
+    "verify", "reference", "parquet", "record_step", "fmu", "no_pictures", "no_probe", "overwrite",
+)  # fmt: skip
+"""What a steady state has no use for."""
 
 
 def planned(options: argparse.Namespace) -> Plan:
@@ -21,7 +28,8 @@ def planned(options: argparse.Namespace) -> Plan:
         ParameterError: something is given that a plan chooses, or that it cannot take.
         HerringboneError: see `studies.planning.plan`.
     """
-    taken = [name for name in (*_CHOSEN, "replace") if getattr(options, name)]
+    given = given_options(options)
+    taken = [name for name in (*_CHOSEN, "replace") if name in given]
     if options.speed is not None or options.torque is not None:
         raise ParameterError(
             "--plan is for the operating point of the scene: give speed and torque in its table "
@@ -30,6 +38,10 @@ def planned(options: argparse.Namespace) -> Plan:
     if taken:
         names = ", ".join(f"--{name.replace('_', '-')}" for name in taken)
         raise ParameterError(f"--plan chooses the model and the solver; drop {names}")
+    scene = load_scene(load_system(options.system)[1], options.scene)
+    if scene.asks and scene.operating.motion is not Motion.TRANSIENT:
+        why = f"of a run over time; scene {scene.name} asks of steady states, so leave it out"
+        refuse_given(options, [name for name in _OF_RUNS if name in given], why)
     found = plan(
         options.system,
         scene=options.scene,

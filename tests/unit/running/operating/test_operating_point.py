@@ -10,6 +10,8 @@ from herringbone.running import api
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.commanded import commanded, operated, with_known_values
 from herringbone.running.prepared import Wishes
+from herringbone.scenes import Ask, Scene
+from herringbone.scenes.scene_text import scene_text
 
 POINT = {"speed": 157.0, "torque": 350.0}
 
@@ -51,3 +53,19 @@ def test_the_command_gives_them_in_its_own_units(monkeypatch, tmp_path, capsys):
     assert taken["torque"] == 150.0
     assert main(["run", "gearbox", "--plan", "--speed", "300"]) == 2
     assert "[operating]" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "option",
+    ["--verify", "--reference", "--parquet", "--record-step=1e-4", "--fmu=python", "--no-pictures",
+     "--no-probe", "--overwrite"],
+)  # fmt: skip
+def test_a_planned_steady_state_takes_no_option_of_a_run(option, tmp_path, capsys, monkeypatch):
+    """It is refused before anything is planned."""
+    monkeypatch.setattr("herringbone.commands.run.planned.plan", pytest.fail)
+    file = tmp_path / "asking.toml"
+    file.write_text(scene_text(Scene("asking", asks=(Ask(("bearing force",)),))), encoding="utf-8")
+    assert main(["run", "gearbox", "--scene", str(file), "--plan", option]) == 2
+    name = option.partition("=")[0]
+    why = "of a run over time; scene asking asks of steady states, so leave it out"
+    assert capsys.readouterr().err == f"herringbone: {name}: {why}\n"
