@@ -33,7 +33,7 @@ def loop(folder, ratio):
 
 
 def test_what_is_left_where_ratios_do_not_fit(tmp_path):
-    """Coupling: 1 - 1/r of the first shaft's speed, where gears hold; gears: r - 1, where it does."""
+    """Coupling: 1 - 1/r of the first shaft's speed, gears: r - 1, each where the other holds."""
     ratio = 1.03
     system, twin = loop(tmp_path, ratio)
     told = {
