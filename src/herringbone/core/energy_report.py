@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from herringbone.core.wording import percent
+
 
 class Verdict(StrEnum):
     """What the coupling does to the energy of a system."""
@@ -74,7 +76,7 @@ class Diagnosis:
         seen = ", as seen at the communication points," if self.sampled else ""
         return [
             f"{self.algorithm} at {self.step:.4g} s: a motion at {hertz(self.frequency)}{seen} "
-            f"grows by {100.0 * self.growth:.3g} % per step",
+            f"grows by {percent(self.growth, 3)} per step",
             *([f"bonds: {shares}"] if shares else []),
             *(f"({k}) {remedy}" for k, remedy in enumerate(self.remedies, 1)),
         ]

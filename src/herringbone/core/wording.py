@@ -8,6 +8,8 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 _as_options = [False]
+_MANY = 1e6
+"""Per cent, from which on a power of ten is shorter."""
 
 
 @contextmanager
@@ -23,6 +25,18 @@ def words_of_commands() -> Iterator[None]:
 def speaks_commands() -> bool:
     """True where messages name options of the command line."""
     return _as_options[0]
+
+
+def percent(share: float, digits: int = 2) -> str:
+    """A share, such as '0.12 %' or '210 %'.
+
+    Args:
+        share: 1 is 100 %.
+        digits: that are shown; all before the point are.
+    """
+    value = 100.0 * share
+    whole = 10.0 ** (digits - 1) <= abs(value) < _MANY
+    return f"{value:.0f} %" if whole else f"{value:.{digits}g} %"
 
 
 def several_values(name: str) -> str:

@@ -8,6 +8,7 @@ from herringbone.analysis.accuracy.common_ground import Sides
 from herringbone.analysis.accuracy.comparison import Comparison
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum
+from herringbone.core.wording import percent
 from herringbone.plotting.panels import DECADES, HIGHEST, close_up, mark_orders
 from herringbone.plotting.style import (
     COLOURS,
@@ -46,7 +47,7 @@ def comparison(found: Comparison, highest: float = HIGHEST) -> Figure:
             how = {"label": side.name, **style}
             _over_time(left, side.result, column, (factor, shown), found.end, how)
             _spectrum(right, side, column, factor, highest, how)
-        off = f"{100.0 * float(row.worst_difference):.3g} % apart"
+        off = f"{percent(float(row.worst_difference), 3)} apart"
         left.set_title(f"{row.group}: {column}, {off}", fontsize=8.5)
         _finish(right, found.second, shown, highest)
     figure_legend(figure, panels[0][0])

@@ -1,6 +1,15 @@
 """Words of options and arguments."""
 
-from herringbone.core.wording import option, setting, settings, several_values, words_of_commands
+import pytest
+
+from herringbone.core.wording import (
+    option,
+    percent,
+    setting,
+    settings,
+    several_values,
+    words_of_commands,
+)
 
 
 def told():
@@ -32,3 +41,12 @@ def test_values_that_are_set_together_are_one_argument():
     assert settings(pair) == 'values={"gear.flank": 1, "bearings.flank": ...}'
     with words_of_commands():
         assert settings(pair) == "--set gear.flank=1 --set bearings.flank=..."
+
+
+@pytest.mark.parametrize(
+    ("share", "digits", "shown"),
+    [(1.234e-5, 2, "0.0012 %"), (0.0996, 2, "10 %"), (2.104, 2, "210 %"), (0.12345, 3, "12.3 %"),
+     (9.999, 3, "1000 %"), (-2.5, 2, "-250 %"), (3e5, 2, "3e+07 %"), (float("inf"), 2, "inf %")],
+)  # fmt: skip
+def test_shares(share, digits, shown):
+    assert percent(share, digits) == shown

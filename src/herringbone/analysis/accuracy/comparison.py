@@ -33,6 +33,7 @@ from herringbone.analysis.figures.operating_point import run_mesh_frequency, ste
 from herringbone.analysis.figures.standstill import stands_still
 from herringbone.core import ParameterError
 from herringbone.core.facts import Facts
+from herringbone.core.wording import percent
 from herringbone.result.folder.load import load
 from herringbone.result.result import TIME, Result
 
@@ -103,7 +104,7 @@ class Comparison(Facts):
         return {
             "runs": f"{self.first.name} and {self.second.name}",
             "compared": f"{self.begin:g} to {self.end:g} s",
-            **{str(row.group): f"{100.0 * float(row.difference):.3g} %" for row in rows},
+            **{str(row.group): percent(float(row.difference), 3) for row in rows},
             "parameters that differ": str(len(self.parameters) or ""),
             "resources that differ": ", ".join(map(str, self.resources["resource"])),
             "notes": "; ".join(self.notes),

@@ -31,7 +31,7 @@ from herringbone.analysis.stability.recommendation import (
 from herringbone.components.registry import COMPONENTS
 from herringbone.components.resources.stiffness_table import read_uncertainty
 from herringbone.core.declaring.roles import SIDES, Quantity, Role
-from herringbone.core.wording import option
+from herringbone.core.wording import option, percent
 from herringbone.cosim.algorithms import parse_algorithm
 from herringbone.result.budget import BudgetRow, Known
 from herringbone.result.result import TIME, Result
@@ -180,7 +180,7 @@ def _housings(result: Result) -> Iterator[BudgetRow]:
         band = float(housing.certificate.get("band_hz", 0.0))
         how = f"certified bound up to {band:g} Hz"
         if (share := share_beyond(result, _CHANNEL, band)) > float(bound):
-            how += f"; {100 * share:.2g} % of the bearing forces lie beyond, where nothing is known"
+            how += f"; {percent(share)} of the bearing forces lie beyond, where nothing is known"
         yield BudgetRow(source, quantity, float(bound), Known.ESTIMATED, how)
 
 

@@ -14,7 +14,7 @@ from herringbone.analysis.figures.operating_point import run_mesh_frequency, ste
 from herringbone.analysis.figures.spectra import hann_weight
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.declaring.units import R_MIN
-from herringbone.core.wording import option
+from herringbone.core.wording import option, percent
 from herringbone.result.result import TIME, Result
 
 _MUCH = 0.05
@@ -50,12 +50,10 @@ def unsettled(result: Result) -> list[str]:
     name, change = max(found.items(), key=lambda item: item[1])
     if change <= _MUCH:
         return []
-    percent = 100.0 * change
-    shown = f"{percent:.0f}" if 10.0 <= percent < 1e6 else f"{percent:.2g}"
     verb = "change" if name.startswith("outputs") else "changes"
     said = (
-        f"not settled: {name.replace('_', ' ')} {verb} by {shown} % of its alternating part from "
-        "the third to the last quarter of the run"
+        f"not settled: {name.replace('_', ' ')} {verb} by {percent(change)} of its alternating "
+        "part from the third to the last quarter of the run"
     )
     return [f"{said}; {_advice(result)}"]
 

@@ -15,6 +15,7 @@ from herringbone.analysis.flange.motions import burst, constant, turn
 from herringbone.analysis.flange.variables import Flange
 from herringbone.analysis.flange.work import CYCLES, periods
 from herringbone.core.declaring.units import R_MIN
+from herringbone.core.wording import percent
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.trial import NOT_TRIED
 
@@ -87,7 +88,7 @@ def _fit(phi: np.ndarray, integral: np.ndarray, speed: np.ndarray) -> tuple[floa
 
 def _shown(r: float, lag: float, rest: float) -> str:
     if rest > RESIDUAL:
-        return f"w is not the rate: {100 * rest:.2g} % of phi is something else"
+        return f"w is not the rate: {percent(rest)} of phi is something else"
     if r == 0.0:
         return "phi does not move with w"
     shown = f"w is {1.0 / r:.5g} of it"
@@ -147,7 +148,7 @@ def turns(bench: Bench, flange: Flange) -> Finding:
     if reached < _FULL:
         return not_tested(test, f"{torque:.3g} N m turn it by {reached:.3g} rad only")
     rest = _fit(angle - angle[0], integral, w - w[0])[2]
-    shown = f"off by {100 * rest:.2g} % over {reached / _FULL:.2g} turns"
+    shown = f"off by {percent(rest)} over {reached / _FULL:.2g} turns"
     return judged(test, rest <= RESIDUAL, shown, limit)
 
 
@@ -162,7 +163,7 @@ def _turned(bench: Bench, flange: Flange, test: str) -> Finding:
     beside = np.maximum(steps[:-2], steps[2:])
     alone = np.where(steps[1:-1] > _ALONE * beside, steps[1:-1], 0.0)
     share = float(alone.max()) / (stiffness * _FULL)
-    shown = f"jumps of the torque up to {100 * share:.2g} % of k 2 pi"
+    shown = f"jumps of the torque up to {percent(share)} of k 2 pi"
     return judged(test, share <= _JUMP, shown, f"{100 * _JUMP:g} %")
 
 

@@ -14,6 +14,7 @@ from herringbone.analysis.flange.answers import TORQUE
 from herringbone.analysis.flange.bench import Bench, Record
 from herringbone.analysis.flange.motions import burst, hann_mean, turn
 from herringbone.analysis.flange.work import ANGLE, CYCLES
+from herringbone.core.wording import percent
 from herringbone.cosim.signature import Kind
 
 SHARE = 0.02
@@ -42,14 +43,14 @@ def reaction(bench: Bench) -> Finding:
         if scale == 0.0:
             return not_tested(test, "no motion changes its torques at the start")
         share = float(np.abs(a + b).max()) / scale
-        return judged(test, share <= AT_ONCE, f"off by {100 * share:.2g} %", limit)
+        return judged(test, share <= AT_ONCE, f"off by {percent(share)}", limit)
     twisted = _held(bench, {one.name: ANGLE})
     means = [hann_mean(twisted.of(flange.tau)[TURN:]) for flange in (one, other)]
     scale = max(map(abs, means))
     if scale == 0.0:
         return not_tested(test, "a twist leaves no torque")
     share = abs(sum(means)) / scale
-    return judged(test, share <= SHARE, f"off by {100 * share:.2g} % in the mean", limit)
+    return judged(test, share <= SHARE, f"off by {percent(share)} in the mean", limit)
 
 
 def relative(bench: Bench) -> Finding:
@@ -68,7 +69,7 @@ def relative(bench: Bench) -> Finding:
     if scale == 0.0:
         return not_tested(test, "a twist leaves no torque")
     left = max(abs(hann_mean(rigid.of(flange.tau)[TURN:])) for flange in (one, other))
-    shown = f"{100 * left / scale:.2g} % of the torque of such a twist"
+    shown = f"{percent(left / scale)} of the torque of such a twist"
     return judged(test, left <= SHARE * scale, shown, f"{100 * SHARE:g} %")
 
 
@@ -90,7 +91,7 @@ def _of_bodies(bench: Bench, test: str, limit: str) -> Finding:
     if ends[0] == 0.0:
         return not_tested(test, f"{TORQUE:g} N m does not move it")
     share = ends[1] / ends[0]
-    shown = f"opposite torques leave {100 * share:.2g} % of the speed of one"
+    shown = f"opposite torques leave {percent(share)} of the speed of one"
     return judged(test, share <= SHARE, shown, limit)
 
 
@@ -99,7 +100,7 @@ def _handed_on(bench: Bench, test: str, limit: str) -> Finding:
     one, other = sorted(bench.flanges, key=lambda flange: not flange.takes_torque)
     found = _held(bench, {one.name: TORQUE})
     share = abs(hann_mean(found.of(other.tau)[TURN:]) / TORQUE - 1.0)
-    return judged(test, share <= SHARE, f"off by {100 * share:.2g} % in the mean", limit)
+    return judged(test, share <= SHARE, f"off by {percent(share)} in the mean", limit)
 
 
 def _follows(bench: Bench, test: str) -> Finding:
@@ -107,5 +108,5 @@ def _follows(bench: Bench, test: str) -> Finding:
     one, other = sorted(bench.flanges, key=lambda flange: not flange.takes_torque)
     found = _held(bench, {other.name: ANGLE})
     share = abs(hann_mean(found.of(one.phi)[TURN:]) / ANGLE - 1.0)
-    shown = f"the other end is {100 * share:.2g} % off in the mean"
+    shown = f"the other end is {percent(share)} off in the mean"
     return judged(test, share <= SHARE, shown, f"{100 * SHARE:g} %")

@@ -21,6 +21,7 @@ from herringbone.analysis.flange.bench import Bench, Signal
 from herringbone.analysis.flange.motions import run_up, steady
 from herringbone.analysis.flange.rates import hint
 from herringbone.analysis.flange.variables import Flange
+from herringbone.core.wording import percent
 from herringbone.cosim.signature import Kind
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.trial import NOT_TRIED
@@ -72,7 +73,7 @@ def rotation(bench: Bench, flange: Flange) -> Finding:
     if long:
         later = _least(firsts[:_FEW], lambda first: _settled(bench, flange, more, first) / first)
     share = max(at_once, later) / abs(stiffness * speed)
-    shown = f"{100 * share:.2g} % at {speed:.4g} rad/s; "
+    shown = f"{percent(share)} at {speed:.4g} rad/s; "
     shown += f"it {_raw(bench, flange)}" if share <= HELD else _turned(bench, flange, more, speed)
     shown += "" if long else "; longer turns are not tested"
     return judged(test, share <= HELD, shown, limit)
@@ -120,7 +121,7 @@ def _of_body(bench: Bench, flange: Flange, test: str) -> Finding:
     least = _least(_first_steps(bench), share)
     if not np.isfinite(least):
         return not_tested(test, f"{TORQUE:g} N m does not move it")
-    return judged(test, least <= BODY, f"{100 * least:.2g} %", limit)
+    return judged(test, least <= BODY, percent(least), limit)
 
 
 def _least(firsts: Sequence[float], share: Callable[[float], float]) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from herringbone.analysis.finding import Finding, judged, remark
 from herringbone.analysis.housing.runs import FORCES, POSITIONS, VELOCITIES, Runs
 from herringbone.analysis.housing.statics import judge_statics, mean_response
+from herringbone.core.wording import percent
 
 RECORDS = 20
 """Random force records of the test of passivity."""
@@ -87,7 +88,7 @@ class Behaviour:
         integral, change = np.cumsum(pieces, axis=0), s[2::2] - s[0]
         error = float(np.abs(integral - change).max()) / float(np.abs(s).max())
         holds = error <= VELOCITY_ERROR
-        shown = f"off by {100 * error:.2g} %"
+        shown = f"off by {percent(error)}"
         if not holds and change.any():
             shown += f"; v is {float((integral * change).sum() / (change**2).sum()):.4g} of it"
         return judged("v = ds/dt", holds, shown, f"{100 * VELOCITY_ERROR:g} %")
@@ -99,7 +100,7 @@ class Behaviour:
         speed = np.abs(self._runs.outputs(forces, VELOCITIES)[1:])
         part = len(speed) // 4
         left = float(np.sqrt((speed[-part:] ** 2).mean() / (speed[:part] ** 2).mean()))
-        shown = f"{100 * left:.2g} % left after {1e3 * 2 * _SETTLING * self._step:.3g} ms"
+        shown = f"{percent(left)} left after {1e3 * 2 * _SETTLING * self._step:.3g} ms"
         limit = f"{100 * _GROWN:g} %; none is legal"
         if left > _GROWN:
             return judged("damping", False, f"{shown}: negative damping", limit)
@@ -141,7 +142,7 @@ class Behaviour:
         error /= float(np.abs(responses).max())
         holds = error <= RECIPROCITY_ERROR
         return judged(
-            "reciprocity", holds, f"off by {100 * error:.2g} %", f"{100 * RECIPROCITY_ERROR:g} %"
+            "reciprocity", holds, f"off by {percent(error)}", f"{100 * RECIPROCITY_ERROR:g} %"
         )
 
     def superposition(self) -> Finding:
@@ -152,7 +153,7 @@ class Behaviour:
         error = float(np.abs(together - expected).max() / np.abs(expected).max())
         holds = error <= SUPERPOSITION_ERROR
         limit = f"{100 * SUPERPOSITION_ERROR:g} %"
-        return judged("superposition", holds, f"off by {100 * error:.2g} %", limit)
+        return judged("superposition", holds, f"off by {percent(error)}", limit)
 
     def passivity(self) -> Finding:
         """Work from rest is never negative."""
@@ -169,7 +170,7 @@ class Behaviour:
         change = float(abs(_rms(half) / _rms(whole) - 1.0))
         holds = change <= HALVING_CHANGE
         return judged(
-            "step halving", holds, f"rms changes by {100 * change:.2g} %",
+            "step halving", holds, f"rms changes by {percent(change)}",
             f"{100 * HALVING_CHANGE:g} %",
         )  # fmt: skip
 

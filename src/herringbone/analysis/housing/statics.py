@@ -9,6 +9,7 @@ import numpy as np
 
 from herringbone.analysis.finding import Finding, judged, remark
 from herringbone.analysis.housing.runs import FORCES, Runs
+from herringbone.core.wording import percent
 
 _ERROR = 0.02
 _ROUNDING = 1e-9
@@ -48,7 +49,7 @@ def judge_statics(
     positive = highest > 0.0 and lowest >= -_ROUNDING * highest  # directions may be rigid
     sign = "" if positive else ", not positive" if highest > 0.0 else ", forces backwards"
     what, limit = "drifts by" if static is None else "off by", f"{100 * _ERROR:g} %, positive"
-    shown = f"{what} {100 * errors.max():.2g} %{sign}"
+    shown = f"{what} {percent(errors.max())}{sign}"
     if not positive or errors.max() <= _ERROR:
         return judged(_TEST, positive, shown, limit)
     left, steps = 0.0, responses.shape[1] - 1
@@ -58,7 +59,7 @@ def judge_statics(
         if error > max(_ERROR, _FALLEN * errors[at]):
             return judged(_TEST, False, shown, limit)
         left, steps = max(left, error), max(steps, taken)
-    shown = f"{what} {100 * left:.2g} % in {1e3 * steps * runs.step:.3g} ms"
+    shown = f"{what} {percent(left)} in {1e3 * steps * runs.step:.3g} ms"
     if left > _ERROR:
         return remark(_TEST, f"slow vibration: {shown}, which are too short to tell", limit)
     return judged(_TEST, True, shown, limit)

@@ -17,6 +17,7 @@ from herringbone.analysis.stability.surrogates.stand_in import StandIn
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.core import HerringboneError, Instance
 from herringbone.core.energy_report import hertz
+from herringbone.core.wording import percent
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System
@@ -69,7 +70,7 @@ def warn_if_unstable(
         )
     return (
         f"{algorithm} is unstable at a step of {step:g} s: a motion at {hertz(growth.frequency)} "
-        f"grows by {100.0 * (growth.radius - 1.0):.3g} % per step, "
+        f"grows by {percent(growth.radius - 1.0, 3)} per step, "
         f"{_in_time(growth, step, duration)}{_elsewhere(strangers)}; 'herringbone stability' shows "
         "the limits"
     )
@@ -132,5 +133,5 @@ def _in_time(growth: Growth, step: float, duration: float) -> str:
         return text
     folds = rate * duration
     if folds < _UNSEEN:
-        return f"{text}: by {100.0 * np.expm1(folds):.2g} % within the run, which does not show it"
+        return f"{text}: by {percent(np.expm1(folds))} within the run, which does not show it"
     return f"{text}: {folds:.3g} powers of e within the run"

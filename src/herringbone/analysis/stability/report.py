@@ -12,7 +12,7 @@ from herringbone.analysis.stability.linear_parts import MeshStiffness
 from herringbone.analysis.stability.recommendation import Ranking, Recommendation
 from herringbone.analysis.stability.steps.simulated_limit import HIGHEST, LOWEST
 from herringbone.analysis.stability.steps.step_limits import StepLimits
-from herringbone.core.wording import option
+from herringbone.core.wording import option, percent
 
 _WIDTH = 100
 """Longest line of the text, in characters."""
@@ -127,7 +127,7 @@ def _foreign_lines(found: Stability) -> list[str]:
         lines.append(f"without saved states, each trial on an instance of its own: {tried}")
     lines += [
         f"nothing is promised for {short(limits.algorithm)}: at its limit they "
-        f"miss by {100.0 * limits.residual:.2g} %"
+        f"miss by {percent(limits.residual)}"
         for limits in found.limits
         if not limits.promised
     ]
@@ -145,8 +145,8 @@ def _recommended(ranking: Ranking, tolerance: float) -> list[str]:
         f"recommended for {100.0 * tolerance:g} %: "
         f"{option('algorithm', short(chosen.algorithm))} "
         f"{option('step', float(f'{chosen.step:.3g}'))}",
-        f"expected error {100.0 * chosen.expected_error:.2g} %, bounded by "
-        f"{chosen.bounded_by}; {100.0 * chosen.separation_error:.2g} % where teeth separate",
+        f"expected error {percent(chosen.expected_error)}, bounded by "
+        f"{chosen.bounded_by}; {percent(chosen.separation_error)} where teeth separate",
         *wrap(f"rule: {chosen.source}", _WIDTH),
         "",
         *_table(rows),

@@ -9,6 +9,7 @@ from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.twin.condensed.twin import DEGREE, STEP, CondensedTwin
 from herringbone.analysis.twin.monolithic import TOLERANCE, Twin, refuse_foreign_parts
 from herringbone.core import HerringboneError
+from herringbone.core.wording import percent
 from herringbone.cosim.structure.system import System
 
 ENOUGH = 1e-6
@@ -61,7 +62,7 @@ def _condensed(system: System, times: np.ndarray, groups: Mapping[str, Sequence[
         # What halving the step changes, by the least order that the kinks of a law leave.
         error = _difference(coarse, values[::2], times[::2], groups) / (2.0**DEGREE - 1.0)
         if error <= ENOUGH:
-            return Reference(values, f"twin by its condensed core, exact to {100.0 * error:.1g} %")
+            return Reference(values, f"twin by its condensed core, exact to {percent(error, 1)}")
         coarse, step = values[::2], 0.5 * step
     raise HerringboneError(
         f"the condensed core of {system.name} is exact to {error:.1g} only at {2.0 * step:g} s"

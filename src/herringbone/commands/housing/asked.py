@@ -10,6 +10,7 @@ from herringbone.commands.output import say
 from herringbone.core import ParameterError
 from herringbone.core.places.temporary import temporary_folder
 from herringbone.core.reduction import BAND
+from herringbone.core.wording import percent
 from herringbone.housing import ModalHousing, write_housing
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def band_for(options: argparse.Namespace, asked: "Asked | None", good_to: float)
         if needed > good_to:
             better = f"the data are good to {good_to:g} Hz, --band {needed:g} would be needed"
         say(
-            f"herringbone: warning: lines beyond {band:g} Hz have {100.0 * share:.2g} % of the "
+            f"herringbone: warning: lines beyond {band:g} Hz have {percent(share)} of the "
             f"{question.name}, the largest line of the scene is at {asked.largest:.5g} Hz: a bound "
             f"to {band:g} Hz says nothing of these; {better}"
         )

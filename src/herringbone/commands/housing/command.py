@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from herringbone.commands.options import add_command
 from herringbone.commands.output import check_writable, say, show
 from herringbone.core.reduction import BAND, TOLERANCE
+from herringbone.core.wording import percent
 
 if TYPE_CHECKING:
     from herringbone.housing.welded.build import BuiltHousing
@@ -141,7 +142,7 @@ def _table(found: "BuiltHousing", file: Path, output: Path) -> str:
         f"Housing of {found.mass:.1f} kg, {found.unknowns} unknowns: {normal} normal and "
         f"{len(model.kind) - normal} residual modes",
         f"Receptance at the seats up to {certificate['band_hz']:g} Hz: error below "
-        f"{100 * certificate['error_bound']:.2g} % of the static compliance",
+        f"{percent(certificate['error_bound'])} of the static compliance",
         "",
         f"{'Hz':>8}  {'kinetic energy of the box [%]':<34}strain energy [%]",
     ]

@@ -14,6 +14,7 @@ from herringbone.commands.output import check_writable, say, show
 from herringbone.components.registry import component_for
 from herringbone.core import HerringboneError
 from herringbone.core.declaring.roles import Role
+from herringbone.core.wording import percent
 from herringbone.housing import ModalHousing, read_housing, write_housing
 from herringbone.housing.files.file_format import DATA
 from herringbone.housing.importers import import_housing, is_matrix
@@ -85,8 +86,8 @@ def _text(figures: dict) -> str:
         lines = [
             f"{before} oscillators became {after}: {counts}",
             f"Receptance at the seats up to {figures['band_hz']:g} Hz: error certified below "
-            f"{100 * bound:.2g} % of the static compliance (tolerance "
-            f"{100 * figures['tolerance']:g} %), {100 * figures['error_against_data']:.2g} % "
+            f"{percent(bound)} of the static compliance (tolerance "
+            f"{100 * figures['tolerance']:g} %), {percent(figures['error_against_data'])} "
             "against the data",
             f"Static compliance at the seats differs by {figures['static_difference']:.1e}",
         ]
@@ -100,12 +101,12 @@ def _text(figures: dict) -> str:
                 f"pseudo modes of the residual matrix there are {after}: {counts}"
             )
         if bound:
-            lines[0] += f"; certified before to {100 * bound:.2g} %"
+            lines[0] += f"; certified before to {percent(bound)}"
         elif pseudo:
             lines.append("Nothing is certified; the static compliance is that of the data")
     lines += [
-        f"{name}: changed by {100 * found['error']:.2g} %, worst output {found['worst']}: "
-        f"{100 * found['worst_error']:.2g} %"
+        f"{name}: changed by {percent(found['error'])}, worst output {found['worst']}: "
+        f"{percent(found['worst_error'])}"
         for name, found in figures.get("changes", {}).items()
     ]
     return "\n".join([*lines, "Files: " + ", ".join(figures["files"])])
@@ -171,7 +172,7 @@ def import_command(options: argparse.Namespace) -> int:
 
 def _import_text(figures: dict) -> str:
     bound = figures["error_bound"]
-    certified = "" if bound is None else f", error certified below {100 * bound:.2g} %"
+    certified = "" if bound is None else f", error certified below {percent(bound)}"
     return "\n".join([
         f"{figures['oscillators']} oscillators, {figures['normal_modes']} of them normal modes, "
         f"good to {figures['valid_to_hz']:g} Hz{certified}",

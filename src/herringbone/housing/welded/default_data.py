@@ -17,6 +17,7 @@ import numpy as np
 
 from herringbone.components.registry import component_for
 from herringbone.core.declaring.roles import Role
+from herringbone.core.wording import percent
 from herringbone.housing import ModalHousing, write_housing
 from herringbone.housing.eigenmodes import eigenmodes
 from herringbone.housing.welded.build import BuiltHousing, build_housing
@@ -117,7 +118,7 @@ def record(
         f"{normal} free-interface normal modes and {len(model.kind) - normal} residual attachment "
         f"modes. The receptance at the seats is certified up to {certificate['band_hz']:g} Hz: its "
         "error against the finite elements is below "
-        f"{100 * certificate['error_bound']:.2g} % of the static compliance; statics are exact.",
+        f"{percent(certificate['error_bound'])} of the static compliance; statics are exact.",
         "## Frequencies and labels",
         _frequencies(built.shares),
         "The labels do not follow from the frequencies. A rigid box on springs that sways along "

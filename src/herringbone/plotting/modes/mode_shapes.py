@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from herringbone.analysis.modes.natural_modes import NaturalModes
 from herringbone.analysis.modes.skeleton import Skeleton, skeleton
 from herringbone.core import HerringboneError
+from herringbone.core.wording import percent
 from herringbone.plotting.style import COLOURS, HALF_STYLE, MARKER_COLOUR, new_figure, styled
 
 _LARGEST = 0.3
@@ -117,7 +118,7 @@ def _empty(axes: Axes, found: NaturalModes, mode: int) -> None:
     told = ", ".join(f"{str(n).rpartition('.')[2]} {100.0 * s:.0f} %" for n, s in shares.items())
     axes.set_title(
         f"{mode + 1}: {found.frequency_hz[mode]:.1f} Hz, damping "
-        f"{100.0 * found.damping_ratio[mode]:.2g} %\n{told}", fontsize=8.5,
+        f"{percent(found.damping_ratio[mode])}\n{told}", fontsize=8.5,
     )  # fmt: skip
     axes.set_axis_off()
     axes.set_aspect("equal")

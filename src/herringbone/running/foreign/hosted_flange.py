@@ -15,7 +15,7 @@ from herringbone.analysis.stability.surrogates.trials import tell_cost
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import Part
 from herringbone.core.process.activity import activity
-from herringbone.core.wording import option
+from herringbone.core.wording import option, percent
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Kind, Laboratory
 from herringbone.cosim.signature.rotation import InputRule
@@ -115,7 +115,7 @@ def hosted_flange(fmu: Path, flange: str, host: Host, values: Values | None = No
     if best.residual >= _NO_MODEL:
         raise FmuError(
             f"{fmu}: nothing is promised: as a linear system it misses trials of {best.base:g} s "
-            f"by {100.0 * best.residual:.2g} %, and others by more; find the limit by runs at "
+            f"by {percent(best.residual)}, and others by more; find the limit by runs at "
             "your host"
         )
     return best

@@ -4,6 +4,8 @@ import math
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
+from herringbone.core.wording import percent
+
 if TYPE_CHECKING:
     from herringbone.running.foreign.hosted_flange import HostedFlange
 
@@ -40,7 +42,7 @@ def hosted_text(found: "HostedFlange") -> str:
         "and 3 points"
         + ("" if found.takes_derivatives else "; this FMU takes no input derivatives"),
         f"the FMU as a linear system of order {found.order} by trial steps of {found.base:g} s; on "
-        f"other trials, at the limits, it misses by {100.0 * found.residual:.2g} %"
+        f"other trials, at the limits, it misses by {percent(found.residual)}"
         if found.base
         else f"by linear equations of order {found.order} that the FMU carries: those of its start "
         "as it was exported, averaged over a mesh period",

@@ -11,6 +11,7 @@ from herringbone.core.caching.remembered import Remembered
 from herringbone.core.places.files import same_folder
 from herringbone.core.process.activity import activity
 from herringbone.core.process.one_thread import one_blas_thread
+from herringbone.core.wording import percent
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.rows.stream import Streaming
@@ -174,7 +175,7 @@ def _trial(core: Core, asked: FusedAsked, t_end: float) -> Measured:
 
 
 def _lines(core: Core, asked: FusedAsked, trial: Measured) -> list[str]:
-    tolerance, errors = asked.tolerance or DEFAULT_TOLERANCE, f"{100.0 * trial.error:.2g} %"
+    tolerance, errors = asked.tolerance or DEFAULT_TOLERANCE, percent(trial.error)
     steps = f"steps of {1e6 * trial.steps.length:.4g} us, degree {trial.steps.degree}"
     over = f"the first {1e3 * trial.window:.3g} ms"
     if asked.step is None:

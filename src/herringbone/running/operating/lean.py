@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from herringbone.analysis.accuracy.error_budget import by_size
 from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
-from herringbone.core.wording import option
+from herringbone.core.wording import option, percent
 from herringbone.result.budget import BudgetRow, Known
 from herringbone.result.result import Result
 from herringbone.scenes import Model, Scene
@@ -78,7 +78,7 @@ def lean_notes(
     said = f"leaner model: {', '.join(parts)}; its error "
     if model.error is None:
         return (f"{said}is not certified: 'herringbone plan' does that",)
-    where = f"{100.0 * model.error:.2g} % of what the scene asks{_where(model)}"
+    where = f"{percent(model.error)} of what the scene asks{_where(model)}"
     if changed:
         names = ", ".join(sorted(changed))
         return (f"{said}was {where}, but is not known with other values of {names}",)

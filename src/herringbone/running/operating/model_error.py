@@ -9,6 +9,7 @@ from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import HerringboneError
 from herringbone.core.declaring.units import R_MIN
+from herringbone.core.wording import percent
 from herringbone.cosim.structure.system import System
 from herringbone.running.operating.at_point import prepared_at
 from herringbone.running.operating.lean import lean_of
@@ -85,7 +86,7 @@ def model_errors(
 
 def _told(question: Question, error: float, *, asked: bool) -> str:
     limit = f" (asked: {100.0 * question.tolerance:g} %)" if asked else ""
-    return f"{100.0 * error:.3g} % of the {question.name}{limit}"
+    return f"{percent(error, 3)} of the {question.name}{limit}"
 
 
 def _found(state: SteadyState, what: str) -> SteadyState:

@@ -13,7 +13,7 @@ from herringbone.analysis.figures.channels import moments
 from herringbone.analysis.figures.operating_point import has_figures
 from herringbone.analysis.unanswered import unanswered
 from herringbone.core.energy_report import EnergyReport
-from herringbone.core.wording import option
+from herringbone.core.wording import option, percent
 from herringbone.result.result import Result
 from herringbone.result.run_info import RunInfo
 from herringbone.running.reporting.figure_lines import WIDTH, figure_sections, labelled
@@ -173,15 +173,15 @@ def _errors(result: Result) -> Iterator[str]:
                     f"{coupling:.2g} %, inner steps {inner:.2g} %")  # fmt: skip
     if result.error:
         errors = ", ".join(
-            f"{name.replace('_', ' ')} {100.0 * e:.3g} %" for name, e in result.error.items()
+            f"{name.replace('_', ' ')} {percent(e, 3)}" for name, e in result.error.items()
         )
         yield labelled("Error against twin", errors)
     if (found := result.verification) is not None:
         errors = ", ".join(
-            f"{name.replace('_', ' ')} {100.0 * e:.3g} %" for name, e in found.groups.items()
+            f"{name.replace('_', ' ')} {percent(e, 3)}" for name, e in found.groups.items()
         )
         if found.worst:
-            errors += f"; worst {found.worst} {100.0 * found.worst_error:.3g} %"
+            errors += f"; worst {found.worst} {percent(found.worst_error, 3)}"
         errors = errors or ("no output changes in the run" if found.known else "not known")
         yield labelled("Error by steps", f"{errors} ({found.how})")
 
@@ -191,7 +191,7 @@ def _budget(result: Result) -> Iterator[str]:
     known = [row for row in result.budget if row.value is not None]
     for k, row in enumerate(known):
         label = "" if k else "Error budget"
-        text = f"{100.0 * (row.value or 0.0):.2g} % {row.source} ({row.known}; {row.quantity})"
+        text = f"{percent(row.value or 0.0)} {row.source} ({row.known}; {row.quantity})"
         yield labelled(label, text)
     unknown = [f"{row.source} ({row.how})" for row in result.budget if row.value is None]
     if unknown:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from herringbone.core.wording import percent
 from herringbone.cosim.structure.approach import Approach, SteadyInput
 from herringbone.running.settling.links import Links
 from herringbone.running.settling.own_motion import OwnMotion
@@ -95,7 +96,7 @@ class Answering:
         self._durations[part.name] *= 2.0
         if self._durations[part.name] > LONGEST:
             raise NeverSettlesError(
-                f"{part.name}.{found.worst} still changes by {100.0 * found.change:.2g} % after "
+                f"{part.name}.{found.worst} still changes by {percent(found.change)} after "
                 f"{0.5 * self._durations[part.name]:.3g} s"
             )
         return motion.approached(motion.acceleration, before, self.way())

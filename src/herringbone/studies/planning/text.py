@@ -9,6 +9,7 @@ from herringbone.core import HerringboneError
 from herringbone.core.declaring.units import R_MIN
 from herringbone.core.errors import reason
 from herringbone.core.places.files import write_whole
+from herringbone.core.wording import percent
 from herringbone.scenes import Motion
 from herringbone.scenes.scene_text import scene_text
 from herringbone.studies.planning.plan import Plan
@@ -49,8 +50,8 @@ def _said(plan: Plan) -> Iterator[str]:
     if choice.measured is not None:
         at = choice.measured
         yield (
-            f"  certified: {100.0 * at.error:.2g} % of the {at.question.name}{_where(at)}, worst "
-            f"output {at.worst}: {100.0 * at.worst_error:.2g} %"
+            f"  certified: {percent(at.error)} of the {at.question.name}{_where(at)}, worst "
+            f"output {at.worst}: {percent(at.worst_error)}"
         )
     if choice.lean:
         lean = choice.lean
@@ -98,7 +99,7 @@ def _rate_of(name: str, names: set[str]) -> bool:
 
 
 def _percent(found: Worst | None) -> str:
-    return "" if found is None else f"{100.0 * found.error:.3g} %"
+    return "" if found is None else percent(found.error, 3)
 
 
 def _time(seconds: float | None) -> str:

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from herringbone.core.wording import percent
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict
 from herringbone.thesis.rig.runs import REAL, SENSORS, SPEEDS, TEETH
 from herringbone.thesis.rig.sampled import (
@@ -90,7 +91,7 @@ def _of_sampling(stats: pd.DataFrame) -> tuple[Finding, ...]:
             100.0 * float(high["rms_settled"].max()) / _RANGE,
             "%",
             f"of the range is the largest rms at 1500 r/min with teeth of {REAL}, and "
-            f"{100.0 * float(perfect['rms_settled'].max()) / _RANGE:.2g} % with perfect ones",
+            f"{percent(float(perfect['rms_settled'].max()) / _RANGE)} with perfect ones",
             "",
             0.1,
         ),

@@ -20,6 +20,7 @@ from herringbone.analysis.stability.steps.step_limits import Progress
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.core import ParameterError
 from herringbone.core.energy_report import Diagnosis, hertz
+from herringbone.core.wording import percent
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System
@@ -59,7 +60,7 @@ class StepVerdict:
         if self.residual > PROMISED:
             return [
                 f"{name}: nothing is promised, because what stands for foreign parts misses their "
-                f"answers by {100.0 * self.residual:.2g} %"
+                f"answers by {percent(self.residual)}"
             ]
         if self.stable:
             return [f"{name}: stable"]
@@ -67,7 +68,7 @@ class StepVerdict:
             return ["unstable: " + self.why.lines()[0], *self.why.lines()[1:]]
         return [
             f"unstable: {name}: a motion at {hertz(self.frequency)} grows by "
-            f"{100.0 * self.growth:.3g} % per step at {self.mesh_stiffness} mesh stiffness"
+            f"{percent(self.growth, 3)} per step at {self.mesh_stiffness} mesh stiffness"
         ]
 
 

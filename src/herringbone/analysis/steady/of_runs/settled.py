@@ -15,6 +15,7 @@ from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
 from herringbone.core.places.part_path import PartPath
+from herringbone.core.wording import percent
 from herringbone.result.result import Result
 
 UNTOLD = "multipliers, bends and sensitivities are not known: foreign parts show no equations"
@@ -89,7 +90,7 @@ class SettledState(PeriodicMotion):
             return []
         group, change = max(self.changes.items(), key=lambda item: item[1])
         return [
-            f"unsettled: {group.replace('_', ' ')} still changes by {100.0 * change:.2g} % of its "
+            f"unsettled: {group.replace('_', ' ')} still changes by {percent(change)} of its "
             f"alternating part from the third to the last quarter of {outcome.time:g} s (asked "
             f"{100.0 * self.tolerance:g} %)"
         ]

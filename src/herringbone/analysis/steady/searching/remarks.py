@@ -10,6 +10,7 @@ from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import ParameterError
+from herringbone.core.wording import percent
 
 NO_ROTATION = (
     "no steady rotation: what drives and what loads balance at no speed; look for a load "
@@ -47,7 +48,7 @@ def unsettled(structure: Structure, march: March | None) -> str:
         return "a march from equilibrium fails, too"
     return (
         f"no stable periodic motion was found: {SETTLING:g} s from equilibrium a march still "
-        f"changes by {100.0 * march.least:.2g} % from one period to later ones; ask for a larger "
+        f"changes by {percent(march.least)} from one period to later ones; ask for a larger "
         "torque, or run it"
     )
 
@@ -58,7 +59,7 @@ def not_repeating(march: Repeated | None) -> str:
         return "a march from equilibrium fails, too"
     return (
         f"no periodic motion was found: after {march.way.time:.3g} s from equilibrium a march "
-        f"still changes by {100.0 * march.change:.2g} % from one period to later ones, though "
+        f"still changes by {percent(march.change)} from one period to later ones, though "
         "motions beside it come together; ask for a larger torque, or run it"
     )
 
@@ -74,7 +75,7 @@ def not_exact(found: Found, tolerance: float) -> str:
 
 def never_repeats(found: Irregular) -> str:
     """Why there is no periodic motion, and what there is."""
-    percent, doubt = (100.0 * part for part in found.parting)
+    parted, doubt = found.parting
     why = (
         "so that it never repeats"
         if found.parting.parts
@@ -86,8 +87,8 @@ def never_repeats(found: Irregular) -> str:
     )
     return (
         f"irregular: teeth rattle; after {found.time:.3g} s from equilibrium a march still changes "
-        f"by {100.0 * found.change:.2g} % from one period to later ones, and motions beside it "
-        f"part by {percent:.2g} % a mesh (+- {doubt:.1g} %), {why}; levels over its last periods: "
+        f"by {percent(found.change)} from one period to later ones, and motions beside it part by "
+        f"{percent(parted)} a mesh (+- {percent(doubt, 1)}), {why}; levels over its last periods: "
         f"{levels}; ask for a larger torque or finer teeth, or run it"
     )
 
