@@ -5,11 +5,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import fmpy
+import pytest
 
 from fuzz.kinds.kind import Kind, file_of, temporary_folders, zipped
+from herringbone.core.caching.remembered import Remembered
 from herringbone.core.places.temporary import remove_temporary_folder
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.variables import read_variables
+from herringbone.cosim.ssp import format as package
 from herringbone.cosim.ssp.read import read_ssp, read_stop_time
 
 HERE = Path(__file__).resolve().parents[1]
@@ -29,7 +32,8 @@ def _read_fmu(file: Path) -> object:
 
 
 def _read_chain(file: Path) -> object:
-    with temporary_folders():
+    with temporary_folders(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(package, "_unpacked", Remembered(1))  # its folders do not stay
         return read_ssp(file), read_stop_time(file)
 
 
