@@ -1,13 +1,16 @@
 """The cache: what is damaged, foreign or left behind."""
 
+import errno
 import json
 import os
 import sys
 import time
+from threading import Event, Thread
 
 import pytest
 
 from herringbone.core import ResourceError
+from herringbone.core.caching import generated
 from herringbone.core.caching.files import (
     all_stored,
     is_stored,
@@ -89,6 +92,42 @@ def test_generated_modules_of_a_moved_cache_lie_where_it_is(cache, monkeypatch):
     found = load_generated("test", source).answer
     assert found() == 43
     assert found.__code__.co_filename == str(moved / "generated" / f"{name}.py")
+
+
+def test_threads_do_not_see_half_of_a_module(monkeypatch):
+    begun, asked, found = Event(), Event(), []
+    monkeypatch.setattr(generated, "waited", lambda: begun.set() or asked.wait(30), raising=False)
+    source = f"from {generated.__name__} import waited\nwaited()\nvalue = 7\n"
+    name = f"herringbone_test_{generated.digest_of(source)}"
+    threads = [Thread(target=lambda: found.append(load_generated("test", source)))]
+    threads[0].start()
+    begun.wait(30)
+    threads.append(Thread(target=lambda: found.append(load_generated("test", source).value)))
+    threads[1].start()
+    threads[1].join(0.2)  # without a lock, it has ended by now
+    asked.set()
+    for thread in threads:
+        thread.join()
+    assert found == [sys.modules[name], 7]
+
+
+def test_a_module_that_did_not_load_is_loaded_again(monkeypatch):
+    monkeypatch.setattr(generated, "interrupt", iter([KeyboardInterrupt, None]), raising=False)
+    source = (
+        f"from {generated.__name__} import interrupt\n"
+        "if error := next(interrupt):\n    raise error\nvalue = 8\n"
+    )
+    with pytest.raises(KeyboardInterrupt):
+        load_generated("test", source)
+    assert load_generated("test", source).value == 8
+
+
+def test_byte_code_for_which_there_is_no_room_is_not_needed(monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(generated, "store", full)
+    assert load_generated("test", "value = 9\n").value == 9
 
 
 @posix

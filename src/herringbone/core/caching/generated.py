@@ -3,11 +3,13 @@
 A file, not `exec`, so that numba can cache what such a module compiles.
 """
 
+import contextlib
 import importlib.util
 import logging
 import marshal
 import sys
 from pathlib import Path
+from threading import RLock
 from types import CodeType, ModuleType
 
 from herringbone.core.caching.files import read_stored, store, write_file
@@ -16,6 +18,8 @@ from herringbone.core.places.paths import cache_folder
 
 _PYTHON = f"{sys.implementation.cache_tag}-{importlib.util.MAGIC_NUMBER.hex()}"
 _LOG = logging.getLogger("herringbone")
+_locks: dict[str, RLock] = {}
+"""By name: with one for all, two threads whose modules import each other would wait for ever."""
 
 
 def load_generated(kind: str, source: str) -> ModuleType:
@@ -25,18 +29,22 @@ def load_generated(kind: str, source: str) -> ModuleType:
         kind: what it is, such as "twin"; becomes part of its name.
         source: Python source.
     """
-    digest = digest_of(source)
-    name = f"herringbone_{kind}_{digest}"
-    if name in sys.modules:
-        return sys.modules[name]
-    file = cache_folder("generated") / f"{name}.py"
-    if not _is_written(file, source):
-        write_file(file, source.encode())
-    spec = importlib.util.spec_from_file_location(name, file)
-    module = importlib.util.module_from_spec(spec)  # type: ignore[arg-type]  # a .py file has one
-    sys.modules[name] = module
-    exec(_code(file, source), module.__dict__)
-    return module
+    name = f"herringbone_{kind}_{digest_of(source)}"
+    with _locks.setdefault(name, RLock()):
+        if name in sys.modules:
+            return sys.modules[name]
+        file = cache_folder("generated") / f"{name}.py"
+        if not _is_written(file, source):
+            write_file(file, source.encode())
+        spec = importlib.util.spec_from_file_location(name, file)
+        module = importlib.util.module_from_spec(spec)  # type: ignore[arg-type]  # .py has one
+        sys.modules[name] = module  # before, because what it defines asks for its module
+        try:
+            exec(_code(file, source), module.__dict__)
+        except BaseException:  # Ctrl-C, too: half of a module would stay for all that ask later
+            sys.modules.pop(name, None)
+            raise
+        return module
 
 
 def _code(file: Path, source: str) -> CodeType:
@@ -50,7 +58,8 @@ def _code(file: Path, source: str) -> CodeType:
         if code.co_filename == str(file):
             return code
     code = compile(source, file, "exec")
-    store(kept, marshal.dumps(code))
+    with contextlib.suppress(OSError):  # it can be made again
+        store(kept, marshal.dumps(code))
     return code
 
 
