@@ -136,7 +136,7 @@ def extract_fmu(file: Path) -> Path:
     try:
         with open_archive(file, "an FMU", FmuError) as archive:
             archive.extract(folder)
-    except FmuError:
+    except BaseException:  # Ctrl-C, too
         remove_temporary_folder(folder)
         raise
     return folder

@@ -97,6 +97,9 @@ class FmuPart(ABC):
             self._remove_files()
             said = "; ".join([str(error), *self.messages(), *self._only_one()])
             raise FmuError(f"{name}: {file} does not instantiate: {said}") from error
+        except BaseException:  # Ctrl-C
+            self._remove_files()
+            raise
         _made.add(str(self.model.guid))
 
     def _only_one(self) -> list[str]:

@@ -164,6 +164,20 @@ def test_extract(tmp_path, monkeypatch):
     assert (folder / BINARY).is_file() and (folder / "modelDescription.xml").is_file()
 
 
+def test_nothing_stays_of_an_interrupted_extraction(tmp_path, monkeypatch):
+    def interrupted(archive, folder):
+        (folder / "half").touch()
+        raise KeyboardInterrupt
+
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    monkeypatch.setattr(zipfile.ZipFile, "extractall", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        extract_fmu(write(tmp_path, description()))
+    assert not list(temporary.iterdir())
+
+
 @pytest.mark.parametrize("name", ["with ü", "with#", "with%20"])
 def test_extract_refuses_paths_that_python_fmus_cannot_load_from(tmp_path, monkeypatch, name):
     temporary = tmp_path / name
