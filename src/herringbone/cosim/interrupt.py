@@ -14,7 +14,10 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class InterruptFlag:
-    """Context in which SIGINT and SIGTERM set a flag; only in the main thread."""
+    """Context in which SIGINT and SIGTERM set a flag; only in the main thread.
+
+    A signal that a host in C handles itself is left to it: Python could not give it back.
+    """
 
     def __init__(self) -> None:
         self.raised = False
@@ -22,7 +25,8 @@ class InterruptFlag:
     def __enter__(self) -> "InterruptFlag":
         self._main = threading.current_thread() is threading.main_thread()
         if self._main:
-            self._before = {s: signal.signal(s, self._set) for s in _SIGNALS}
+            own = [s for s in _SIGNALS if signal.getsignal(s) is not None]
+            self._before = {s: signal.signal(s, self._set) for s in own}
         return self
 
     def _set(self, number: int, frame: FrameType | None) -> None:

@@ -101,6 +101,25 @@ def test_handler_is_restored_after_an_error(handler):
     assert signal.getsignal(signal.SIGINT) is mine
 
 
+def test_a_signal_that_a_host_in_c_handles_is_left_to_it(monkeypatch):
+    """Python knows of its handler that it is none of its own, and cannot set it again."""
+    mine = lambda number, frame: None  # noqa: E731
+    handlers = {signal.SIGINT: mine, signal.SIGTERM: None}
+
+    def set_handler(number, handler):
+        if handler is None:
+            raise TypeError
+        before, handlers[number] = handlers[number], handler
+        return before
+
+    monkeypatch.setattr(signal, "signal", set_handler)
+    monkeypatch.setattr(signal, "getsignal", handlers.get)
+    with InterruptFlag():
+        assert handlers[signal.SIGINT] is not mine
+        assert handlers[signal.SIGTERM] is None
+    assert handlers == {signal.SIGINT: mine, signal.SIGTERM: None}
+
+
 def test_runs_in_another_thread(handler):
     """Python delivers signals to the main thread only; elsewhere the handler is left alone."""
     mine, _ = handler
