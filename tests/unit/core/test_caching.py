@@ -13,6 +13,7 @@ from herringbone.core import ResourceError
 from herringbone.core.caching import generated
 from herringbone.core.caching.files import (
     all_stored,
+    alone_in,
     is_stored,
     keep,
     kept,
@@ -134,6 +135,22 @@ def test_byte_code_for_which_there_is_no_room_is_not_needed(monkeypatch):
 def test_a_new_cache_is_of_its_user_alone(cache):
     assert cache_folder("x").is_dir()
     assert cache.stat().st_mode & 0o777 == 0o700
+
+
+@posix
+def test_a_new_cache_is_of_its_user_alone_whatever_the_umask(cache):
+    """Else it would be refused as soon as it is there, where a group may write by default."""
+    before = os.umask(0)
+    try:
+        write_file(cache / "a" / "b" / "x", b"")
+        cache_folder("c")
+        with alone_in(cache / "d" / "e"):
+            pass
+    finally:
+        os.umask(before)
+    made = [cache, *(place for place in cache.rglob("*") if place.is_dir())]
+    assert len(made) == 6
+    assert {place.stat().st_mode & 0o777 for place in made} == {0o700}
 
 
 @posix

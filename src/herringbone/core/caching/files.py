@@ -13,7 +13,7 @@ from typing import Any
 
 from herringbone.core.errors import reason
 from herringbone.core.places.files import PART
-from herringbone.core.places.paths import CACHE_VARIABLE, is_trusted
+from herringbone.core.places.paths import CACHE_VARIABLE, is_trusted, make_private
 
 _LOG = logging.getLogger("herringbone")
 _SUFFIX = ".sha256"
@@ -29,7 +29,7 @@ def _stamp(file: Path) -> Path:
 
 def write_file(file: Path, content: bytes) -> None:
     """Write a file so that others see all of it or nothing; raises OSError, which names it."""
-    file.parent.mkdir(parents=True, exist_ok=True)
+    make_private(file.parent)
     _sweep(file.parent)
     with tempfile.NamedTemporaryFile(dir=file.parent, suffix=PART, delete=False) as part:
         try:
@@ -100,7 +100,7 @@ def alone_in(folder: Path) -> Iterator[None]:
     with contextlib.suppress(OSError, ImportError):
         import fcntl  # noqa: PLC0415 (not on Windows)
 
-        folder.mkdir(parents=True, exist_ok=True)
+        make_private(folder)
         descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
         fcntl.flock(descriptor, fcntl.LOCK_EX)
     try:

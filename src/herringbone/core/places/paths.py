@@ -71,8 +71,7 @@ def cache_folder(kind: str) -> Path:
     root = cache_root()
     folder = root / kind
     try:
-        root.mkdir(mode=0o700, parents=True, exist_ok=True)
-        folder.mkdir(parents=True, exist_ok=True)
+        make_private(folder)
         unsafe = next((place for place in (root, folder) if not is_trusted(place)), None)
     except OSError as error:
         raise ResourceError(
@@ -85,6 +84,17 @@ def cache_folder(kind: str) -> Path:
             f"'chmod go-w' it, or set {CACHE_VARIABLE} to a folder of your own"
         )
     return folder
+
+
+def make_private(folder: Path) -> None:
+    """Make a folder of the cache, and those above it that are missing, for this user alone.
+
+    Whatever the umask: where a group may write by default, the cache would refuse its own folders.
+    Raises OSError.
+    """
+    if not folder.is_dir():
+        make_private(folder.parent)
+        folder.mkdir(mode=0o700, exist_ok=True)
 
 
 def is_trusted(place: Path) -> bool:

@@ -31,7 +31,7 @@ from numba.core.cpu import CPUContext
 from numba.core.typing import Signature
 
 from herringbone.core.caching.keys import digest_of, module_key
-from herringbone.core.places.paths import cache_folder, cache_root, is_trusted
+from herringbone.core.places.paths import cache_folder, cache_root, is_trusted, make_private
 
 D = TypeVar("D")
 _LOG = logging.getLogger("herringbone")
@@ -56,6 +56,11 @@ class _Locator(_CacheLocator):
         module = self._function.__module__.removeprefix("herringbone.")
         how = f"optimised-{int(config.OPT)}" + "-checked" * bool(config.BOUNDSCHECK)
         return str(_kernels(cache_root()) / how / module)
+
+    def ensure_cache_path(self) -> None:
+        """Make the folder; raises OSError if nothing can be written there."""
+        make_private(Path(self.get_cache_path()))
+        super().ensure_cache_path()
 
     def get_source_stamp(self) -> str:
         """Key of what it is compiled from."""
@@ -119,6 +124,7 @@ class _CheckedData(IndexDataCacheFile):
     def _write(self, path: str, data: tuple) -> None:
         content = self._dump(data)
         with self._open_for_write(path) as file:
+            Path(file.name).chmod(0o600)  # whatever the umask, see `_read`
             file.write(hashlib.sha256(content).digest() + content)
 
     def _read(self, path: str) -> tuple:

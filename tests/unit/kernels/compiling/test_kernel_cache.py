@@ -4,6 +4,7 @@ This leans on the inside of numba: it is run with every minor version that pypro
 """
 
 import importlib.util
+import os
 import subprocess
 import sys
 from importlib.metadata import requires, version
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 
 from herringbone.core.caching import keys as cache_keys
-from herringbone.kernels.compiling.cache import _CheckedData
+from herringbone.kernels.compiling.cache import KernelFiles, _CheckedData
 from herringbone.kernels.compiling.linking import Piece, Whole
 
 SOURCE = """
@@ -242,6 +243,21 @@ def test_two_processes_that_save_at_once_do_not_take_each_others_code(tmp_path, 
     reader = _CheckedData(str(tmp_path), "kernel", "stamp")
     assert reader.load(("int64",)) in {("code for int64",), None}
     assert reader.load(("float64",)) in {("code for float64",), None}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="modes of POSIX")
+def test_kernels_are_found_again_whatever_the_umask(cache):
+    """What others can write is not loaded."""
+    files = KernelFiles(in_process)
+    before = os.umask(0)
+    try:
+        files.locator.ensure_cache_path()
+        _CheckedData(files.locator.get_cache_path(), "kernel", "stamp").save(("int64",), ("code",))
+    finally:
+        os.umask(before)
+    reader = _CheckedData(files.locator.get_cache_path(), "kernel", "stamp")
+    assert reader.load(("int64",)) == ("code",)
+    assert {place.stat().st_mode & 0o077 for place in cache.rglob("*")} == {0}
 
 
 def test_what_a_factory_makes_is_kept_by_what_it_was_given(tmp_path):
