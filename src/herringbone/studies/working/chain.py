@@ -2,13 +2,14 @@
 
 import os
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager, chdir, nullcontext
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, chdir, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, ResourceError
 from herringbone.core.process.freed_memory import keep_freed_memory
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.result.result import Result
@@ -27,6 +28,17 @@ FAILED = "failed"
 _KEPT = 2
 """Studies whose systems stay loaded in a process."""
 _opened: OrderedDict[str, Evaluation] = OrderedDict()
+
+
+class _Working:
+    """Chains of this process that need the working folder, which is of all threads."""
+
+    def __init__(self) -> None:
+        self.lock, self.count, self.folder = Lock(), 0, Path()
+        self.change: AbstractContextManager[None] = nullcontext()
+
+
+_working = _Working()
 
 
 @dataclass(frozen=True)
@@ -74,7 +86,8 @@ def run_chain(job: Job, progress: Callable[[int], None] = lambda points: None) -
         progress: called after each point with 1.
 
     Raises:
-        HerringboneError: the system itself cannot be loaded.
+        HerringboneError: the system itself cannot be loaded, or chains of another folder are
+            computed in this process.
     """
     keep_freed_memory()
     before = cpu_seconds()
@@ -150,9 +163,30 @@ def _evaluation(job: Job) -> Evaluation:
     return found
 
 
-def _in_folder(folder: str) -> AbstractContextManager[None]:
-    """The folder of relative names; a change concerns all threads, so that none is made in vain."""
-    return nullcontext() if Path.cwd() == Path(folder) else chdir(folder)
+@contextmanager
+def _in_folder(folder: str) -> Iterator[None]:
+    """The folder of relative names, until the last chain of any thread has ended.
+
+    A change concerns all threads, so that none is made in vain. Raises ResourceError.
+    """
+    with _working.lock:
+        if _working.count and _working.folder != Path(folder):
+            raise ResourceError(
+                f"this process computes chains in {_working.folder}, and cannot be in {folder} as "
+                "well; give studies of other folders workers of their own, or of one thread each"
+            )
+        if not _working.count:
+            _working.folder = Path(folder)
+            _working.change = nullcontext() if Path.cwd() == Path(folder) else chdir(folder)
+            _working.change.__enter__()
+        _working.count += 1
+    try:
+        yield
+    finally:
+        with _working.lock:
+            _working.count -= 1
+            if not _working.count:
+                _working.change.__exit__(None, None, None)
 
 
 def cpu_seconds() -> float:
