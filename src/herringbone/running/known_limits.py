@@ -43,7 +43,8 @@ class KnownLimits:
             bands = tuple((low, high) for low, high in known.pop("unstable_bands"))
             return StepLimits(unstable_bands=bands, **known)
         found = find()
-        if not policy().trials_ended:  # a further run may tell more
+        lost = any(policy().lost[spec.name] for spec in self.system.parts)
+        if not policy().trials_ended and not lost:  # a further run may tell more
             keep(file, asdict(found))
         return found
 

@@ -1,5 +1,7 @@
 """Trials that were made before are not made again, and tell the same, to the bit."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,8 @@ from herringbone.core import Instance
 from herringbone.core.caching import tried as caching
 from herringbone.core.caching.tried import forget_tried, tried_folder
 from herringbone.cosim.adapter import WithoutStates
-from herringbone.cosim.signature import Laboratory
+from herringbone.cosim.cell.policy import foreign_fmu_policy
+from herringbone.cosim.signature import Laboratory, trial
 from herringbone.cosim.signature.known_trials import KnownTrials
 from herringbone.cosim.signature.trial import Refused
 
@@ -149,6 +152,15 @@ def test_that_a_part_was_lost_is_not_kept():
     known.save()
     known = KnownTrials(CONTENT, "there")
     assert known.outcome(lambda: np.ones(1), "outputs", H, np.zeros((1, 1))) == 1.0
+
+
+def test_that_a_part_was_lost_is_told(monkeypatch):
+    monkeypatch.setattr(trial, "do_step", lambda *_: 4)
+    with foreign_fmu_policy() as found, pytest.raises(Refused):
+        laboratory(Rotors()).__enter__()
+    assert found.lost == {"rotor": 1}
+    (remark,) = found.remarks
+    assert re.fullmatch(r"rotor lost a trial \(.*\); what follows from it is not kept", str(remark))
 
 
 def test_another_trial_shows_that_a_part_is_not_the_one_that_it_was(caplog):

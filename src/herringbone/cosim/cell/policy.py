@@ -53,6 +53,8 @@ class Policy:
         longest_trial: steps that a trial may have in the test of a role; None: any number.
         most_trial_steps: that all trials of a part may have together; None: any number.
         taken: steps of trials, by part.
+        lost: trials that a crash or a deadline ended, by part; another time they may do otherwise,
+            so that nothing that was found with them is kept.
     """
 
     in_process: bool = False
@@ -60,6 +62,7 @@ class Policy:
     longest_trial: int | None = None
     most_trial_steps: int | None = None
     taken: Counter[str] = field(default_factory=Counter)
+    lost: Counter[str] = field(default_factory=Counter)
     remarks: list[Remark] = field(default_factory=list)
     idle: dict[str, list["Cell"]] | None = None
 
@@ -68,6 +71,13 @@ class Policy:
         """Parts of which no further trials are made."""
         most = self.most_trial_steps
         return tuple(name for name, n in self.taken.items() if most is not None and n >= most)
+
+    def note_lost(self, part: str, why: str) -> None:
+        """A trial of a part was lost: that is told, and counts."""
+        self.lost[part] += 1
+        remark = Remark(part, f"lost a trial ({why}); what follows from it is not kept")
+        if remark not in self.remarks:
+            self.remarks.append(remark)
 
 
 _policy: ContextVar[Policy | None] = ContextVar("cell_policy", default=None)

@@ -206,4 +206,7 @@ class Trial:
             self._saved.clear()
         said = "; ".join(self.part.messages())
         whole = f"{self.part.name} refuses {what} (status {status})" + (f": {said}" if said else "")
-        return Refused(whole, lost=status >= _FATAL)
+        lost = status >= _FATAL
+        if lost:
+            policy().note_lost(self.part.name, said or f"status {status}")
+        return Refused(whole, lost=lost)

@@ -8,6 +8,7 @@ import numpy as np
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.caching.tried import tried_folder
+from herringbone.cosim.cell.policy import policy
 from herringbone.cosim.signature import Answer, Kind, Signature
 from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.signature import Rate
@@ -20,7 +21,8 @@ _TRIALS = "herringbone.cosim.signature.probe", "herringbone.running.foreign.tria
 def known_signature(spec: PartSpec, step: float, find: Callable[[], Signature]) -> Signature:
     """The signature that was found before, or is found now and kept.
 
-    One that is unknown is not kept: what stood against the trials may have been elsewhere.
+    One that is unknown is not kept: what stood against the trials may have been elsewhere. Nor is
+    one after a trial of the part was lost.
 
     Args:
         spec: of a foreign part.
@@ -31,7 +33,7 @@ def known_signature(spec: PartSpec, step: float, find: Callable[[], Signature]) 
     if (known := kept(file)) is not None:
         return _signature(known)
     found = find()
-    if found.kind is not Kind.UNKNOWN:
+    if found.kind is not Kind.UNKNOWN and not policy().lost[spec.name]:
         keep(file, _plain(found))
     return found
 

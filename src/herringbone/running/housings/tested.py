@@ -12,6 +12,7 @@ from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.caching.tried import tried_folder
 from herringbone.core.part import Part
+from herringbone.cosim.cell.policy import policy
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.structure.system import Values
 from herringbone.running.foreign.started import started, started_content
@@ -46,7 +47,9 @@ def tested_housing(
     longest: int | None = None,
     progress: Report = lambda what: None,
 ) -> Tested:
-    """What tests of a housing find, now or before; of one that does not repeat nothing is kept.
+    """What tests of a housing find, now or before.
+
+    Nothing is kept of one that does not repeat, or after a trial was lost.
 
     Args:
         fmu: the file.
@@ -68,6 +71,6 @@ def tested_housing(
             make, static=static, usual=usual, step=step, longest=longest, progress=progress
         )
         repeated = repeats(make, found, step)
-    if repeated:
+    if repeated and not policy().lost[fmu.stem]:
         keep(file, [[f.test, f.verdict, f.measured, f.limit] for f in found])
     return Tested(found, repeated)

@@ -10,6 +10,7 @@ import pytest
 from herringbone.analysis.stability.steps.step_limits import StepLimits
 from herringbone.core.places.paths import CACHE_VARIABLE, component_folder
 from herringbone.cosim.algorithms import LI, Jacobi
+from herringbone.cosim.cell.policy import foreign_fmu_policy, remarks_of_cells
 from herringbone.cosim.signature import Answer, Kind, Signature
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.foreign.known_signatures import known_signature
@@ -102,6 +103,28 @@ def test_an_unknown_signature_is_looked_for_again(system):
     assert len(calls) == 1
     known_signature(replace(spec, values={"mass": 2.0}), STEP, find)
     assert len(calls) == 2
+
+
+def test_what_is_found_after_a_trial_was_lost_is_looked_for_again(system):
+    """A crash, or a late answer, is not what the part does."""
+    limits, of_limits = counted(LIMITS)
+    signature, of_signature = counted(replace(SIGNATURE, kind=Kind.BODY))
+
+    def ask():
+        KnownLimits(system, STEP)(LI(), False, limits)
+        known_signature(system.parts[1], STEP, signature)
+
+    with foreign_fmu_policy() as found:
+        found.note_lost("theirs", "no answer within 60 s")
+        with remarks_of_cells():
+            ask()
+    for _ in range(2):
+        ask()
+    assert (len(of_limits), len(of_signature)) == (2, 2)
+    (remark,) = found.remarks
+    assert str(remark) == (
+        "theirs lost a trial (no answer within 60 s); what follows from it is not kept"
+    )
 
 
 @pytest.mark.parametrize(("error", "searches"), [(NeverSettlesError, 1), (NoSettledStartError, 2)])
