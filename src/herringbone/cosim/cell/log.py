@@ -35,12 +35,13 @@ class OutputLog:
         self._thread.start()
 
     def _read(self) -> None:
-        while piece := self._piece():
-            room = LIMIT - self.size
-            self.size += len(piece)
-            if room > 0:
-                with contextlib.suppress(OSError, HerringboneError):
-                    self._write(piece[:room])
+        with self._stream:
+            while piece := self._piece():
+                room = LIMIT - self.size
+                self.size += len(piece)
+                if room > 0:
+                    with contextlib.suppress(OSError, HerringboneError):
+                        self._write(piece[:room])
 
     def _piece(self) -> bytes:
         try:

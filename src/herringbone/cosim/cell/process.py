@@ -24,6 +24,7 @@ from herringbone.cosim.cell.block import (
     places,
 )
 from herringbone.cosim.cell.calls import messages
+from herringbone.cosim.cell.ending import end_group, ends_within, is_child
 from herringbone.cosim.cell.inside.code import code_file
 from herringbone.cosim.cell.log import OutputLog
 from herringbone.cosim.cell.policy import policy, spin_time
@@ -168,8 +169,8 @@ class Cell:
 
     def _diagnosed(self) -> str:
         late = self.side.record["lost"][0] == LATE
-        if late:
-            self._process.kill()
+        if is_child(self._process) and (late or ends_within(self._watched, _END)):
+            end_group(self._process)
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(_END)
         call = self._call or _CALLS[int(self.side.header["where"][0]) % len(_CALLS)]
@@ -186,14 +187,13 @@ class Cell:
         return f"it ended its process {at} with exit code {code}"
 
     def close(self) -> None:
-        """End the process."""
+        """End the process, and what its FMU has started."""
         _open.discard(self)
         _share_cores()
-        if self._process.poll() is None and not self.lost:
+        if is_child(self._process) and not self.lost:
             with contextlib.suppress(HerringboneError):
                 self._quit()
-        if self._process.poll() is None:
-            self._process.kill()
+        end_group(self._process)
         self._process.wait()
         self.log.close()
         with contextlib.suppress(OSError):
@@ -207,8 +207,7 @@ class Cell:
         self.side.write(packed({"call": "quit", "instance": -1, "arguments": []}))
         self.side.header["kind"] = CONTROL
         self._converse(self.side.address)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(_END)
+        ends_within(self._watched, _END)
 
 
 _NAMES = {
