@@ -16,6 +16,8 @@ from herringbone.cosim.cell.process import Cell
 from herringbone.cosim.fmu.variables import read_variables
 
 T = TypeVar("T")
+_MOST_USES = 16
+"""Of a cell: each may load the library from another folder, and none is unloaded."""
 
 
 def cell_for(name: str, file: Path, model: ModelDescription, folder: Path) -> Cell:
@@ -33,9 +35,10 @@ def cell_for(name: str, file: Path, model: ModelDescription, folder: Path) -> Ce
 
 
 def give_back(cell: Cell) -> None:
-    """Keep a cell for the next time, or end it if its FMU did anything to it."""
+    """Keep a cell for the next time, or end it if its FMU did anything to it, or it served long."""
     idle = policy().idle
-    if idle is not None and _is_as_new(cell):
+    cell.uses += 1
+    if idle is not None and cell.uses < _MOST_USES and _is_as_new(cell):
         idle.setdefault(cell.content, []).append(cell)
     else:
         cell.close()

@@ -61,12 +61,14 @@ class Cell:
 
     Attributes:
         once: its FMU allows one instance per process, so that it is not used again.
+        uses: how often it was given back.
 
     Raises:
         FmuError: it does not start.
     """
 
     once = False
+    uses = 0
 
     def __init__(self, name: str, content: str, words: int, folder: Path) -> None:
         self.name, self.content = name, content
