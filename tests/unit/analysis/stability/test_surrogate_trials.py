@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from herringbone.analysis.stability.surrogates.sampled import SampledSurrogate
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 from herringbone.analysis.stability.surrogates.trials import tell_cost
 from herringbone.core.part import PartVariable
+from herringbone.cosim.cell.policy import foreign_fmu_policy
+from herringbone.cosim.cell.process import CellLost
 
 STEP = 4e-5
 LONGEST = 0.5 / (3 * 81)
@@ -69,3 +72,13 @@ def test_a_slow_part_is_tried_as_a_quick_one(caplog):
     assert not caplog.text
     tell_cost(slow[1], "motor")
     assert "663 steps of each length" in caplog.text
+
+
+def test_a_cell_that_is_lost_before_a_step_is_told():
+    def lost(h):
+        raise CellLost("controller: signal 9")
+
+    clock = SimpleNamespace(model=object(), name="controller", _residuals={}, _missed=lost)
+    with foreign_fmu_policy() as found:
+        assert SampledSurrogate.residual(clock, 1e-3) == np.inf
+    assert found.lost == {"controller": 1}

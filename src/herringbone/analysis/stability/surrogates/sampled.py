@@ -17,6 +17,8 @@ from herringbone.analysis.stability.surrogates.identification import (
 )
 from herringbone.core import HerringboneError
 from herringbone.core.process.one_thread import one_blas_thread
+from herringbone.cosim.cell.policy import policy
+from herringbone.cosim.cell.process import CellLost
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.trial import Refused
 
@@ -132,7 +134,9 @@ class SampledSurrogate:
         if h not in self._residuals:
             try:
                 self._residuals[h] = self._missed(h)
-            except (Refused, HerringboneError):
+            except HerringboneError as error:
+                if isinstance(error, CellLost):  # not in a step, whose loss is noted
+                    policy().note_lost(self.name, str(error))
                 self._residuals[h] = np.inf
         return self._residuals[h]
 
