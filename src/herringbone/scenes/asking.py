@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from herringbone.analysis.leaner.form import Form
 from herringbone.core import ParameterError
+from herringbone.scenes.checks import chosen
 
 Range = tuple[float, float]
 """Lowest and highest value."""
@@ -27,7 +28,7 @@ class Ask:
     Attributes:
         what: groups of channels, patterns of outputs, or quantities by name, see
             `analysis.leaner.asked_for`.
-        form: as what.
+        form: as what; a text becomes the choice that it names.
         tolerance: relative error that is allowed.
         band: end of a spectrum [Hz]; infinite: all lines.
         orders: mesh orders, of amplitudes.
@@ -40,11 +41,12 @@ class Ask:
     orders: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        """Take a text for one name, and check values.
+        """Take a text for one name or the form, and check values.
 
         Raises:
             ParameterError: nothing is asked, or a value is out of range.
         """
+        object.__setattr__(self, "form", chosen(Form, self.form, "ask: as"))
         if isinstance(self.what, str):
             object.__setattr__(self, "what", (self.what,))
         if not self.what:
@@ -80,7 +82,7 @@ class Operating:
     """Where something is asked; None: as the scene has it.
 
     Attributes:
-        motion: what kind of.
+        motion: what kind of; a text becomes the choice that it names.
         speed: of the pinion [rad/s].
         torque: at the pinion [N m].
     """
@@ -88,6 +90,14 @@ class Operating:
     motion: Motion = Motion.STEADY
     speed: Range | None = None
     torque: Range | None = None
+
+    def __post_init__(self) -> None:
+        """Take a text for the motion.
+
+        Raises:
+            ParameterError: there is no such motion.
+        """
+        object.__setattr__(self, "motion", chosen(Motion, self.motion, "operating: motion"))
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from herringbone.analysis.leaner.form import Form
 from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
 from herringbone.scenes.asking import Ask, Model, Motion, Operating, Range
+from herringbone.scenes.checks import chosen
 
 ASKING = {"ask", "operating", "model"}
 """Keys of a scene that are read here."""
@@ -46,30 +47,25 @@ def _tables(given: Any) -> list[Any]:  # noqa: ANN401 (anything from TOML)
 def _ask(data: Any) -> Ask:  # noqa: ANN401 (anything from TOML)
     _known(data, "ask", {"what", "as", "tolerance", "band", "orders"})
     what = _texts(data.get("what", []), "ask: what")
-    form = data.get("as", Form.SPECTRUM.value)
-    if form not in list(Form):
-        raise ParameterError(f"ask: as = {form!r}; it must be one of {', '.join(Form)}")
+    form = chosen(Form, data.get("as", Form.SPECTRUM), "ask: as")
     tolerance = _number(data.get("tolerance", 0.01), "ask: tolerance")
     band = _number(data["band"], "ask: band") if "band" in data else math.inf
     orders = data.get("orders", [])
     orders = tuple(_number(k, "ask: orders") for k in (orders if isinstance(orders, list) else [0]))
-    return Ask(what, Form(form), tolerance, band, orders)
+    return Ask(what, form, tolerance, band, orders)
 
 
 def _operating(data: Any) -> Operating:  # noqa: ANN401
     _known(data, "operating", {"motion", "speed", "torque"})
-    motion = data.get("motion", Motion.STEADY.value)
-    if motion not in list(Motion):
-        kinds = ", ".join(Motion)
-        raise ParameterError(f"operating: motion = {motion!r}; it must be one of {kinds}")
+    motion = chosen(Motion, data.get("motion", Motion.STEADY), "operating: motion")
     speed, torque = _range(data, "operating", "speed"), _range(data, "operating", "torque")
     if speed is not None:
         speed = (speed[0] / R_MIN, speed[1] / R_MIN)
-    if motion == Motion.TRANSIENT and (speed or torque):
+    if motion is Motion.TRANSIENT and (speed or torque):
         raise ParameterError(
             "operating: speed, torque: a transient has those of its cycle; set what commands them"
         )
-    return Operating(Motion(motion), speed, torque)
+    return Operating(motion, speed, torque)
 
 
 def _model(data: Any) -> Model:  # noqa: ANN401

@@ -15,6 +15,7 @@ from herringbone.core.reading.structured import read_toml
 from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, part_files
 from herringbone.scenes.asking import Ask, Model, Operating
 from herringbone.scenes.asking_text import ASKING, read_asking
+from herringbone.scenes.checks import chosen, duration
 
 DEFAULT_SCENE = "loaded"
 _TABLES = {"set", "start_offset"}
@@ -41,7 +42,7 @@ class Scene(Facts):
         name, description: for people.
         t_end: duration [s].
         record_step: time between records [s].
-        start: how the run starts.
+        start: how the run starts; a text becomes the choice that it names.
         values: variables to set, by `instance.variable`.
         start_offset: added to start values of states after the start was computed.
         gears: gear file by path of the gear pair's part, or of a system around it; "": the only
@@ -64,6 +65,16 @@ class Scene(Facts):
     asks: tuple[Ask, ...] = ()
     operating: Operating = field(default_factory=Operating)
     model: Model = field(default_factory=Model)
+
+    def __post_init__(self) -> None:
+        """Take a text for the start, and check start and times.
+
+        Raises:
+            ParameterError: there is no such start, or a time is no positive, finite number.
+        """
+        object.__setattr__(self, "start", chosen(Start, self.start, "scene: start"))
+        for key in sorted(_NUMBERS):
+            object.__setattr__(self, key, duration(getattr(self, key), f"scene: {key}"))
 
     def _facts(self) -> dict[str, str]:
         return {
@@ -114,15 +125,13 @@ def read_scene(file: str | Path) -> Scene:
             f"{hint and f'; {hint.rstrip()}'}"
         )
     _check_tables(data, file)
-    numbers = {key: _positive(data[key], key, file) for key in _NUMBERS & set(data)}
-    start = data.get("start", Start.EQUILIBRIUM.value)
-    if start not in list(Start):
-        raise ParameterError(f"{file}: start = {start!r}; it must be one of {', '.join(Start)}")
+    numbers = {key: duration(data[key], f"{file}: {key}") for key in _NUMBERS & set(data)}
+    start = chosen(Start, data.get("start", Start.EQUILIBRIUM), f"{file}: start")
     asks, operating, model = read_asking(data, file)
     return Scene(
         file.stem,
         data.get("description", ""),
-        start=Start(start),
+        start=start,
         values={path: beside(value, file.parent) for path, value in data.get("set", {}).items()},
         start_offset=data.get("start_offset", {}),
         gears=part_files(data, "gear", file),
@@ -146,11 +155,3 @@ def _check_tables(data: Mapping[str, Any], file: Path) -> None:
     for path, value in data.get("start_offset", {}).items():
         if isinstance(value, bool | str) or not math.isfinite(value):
             raise ParameterError(f"{file}: {path} = {value!r}: it takes a finite number")
-
-
-def _positive(value: Any, key: str, file: Path) -> float:  # noqa: ANN401 (anything from TOML)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ParameterError(f"{file}: {key} = {value!r}: it takes a number of seconds")
-    if not (math.isfinite(value) and value > 0.0):
-        raise ParameterError(f"{file}: {key} = {value:g} s: it must be positive and finite")
-    return float(value)

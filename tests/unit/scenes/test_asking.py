@@ -83,3 +83,13 @@ def test_refused_in_one_line(tmp_path, text, message):
         _read(tmp_path, text)
     assert str(tmp_path) in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_choices_given_as_texts():
+    """What answers asks `form is Form.LEVEL` and `motion is Motion.TRANSIENT`."""
+    assert Ask("seat velocity", form="level").form is Form.LEVEL
+    assert Operating("transient").motion is Motion.TRANSIENT
+    with pytest.raises(ParameterError, match="ask: as = 'sound'; it must be one of signal, "):
+        Ask("seat velocity", form="sound")
+    with pytest.raises(ParameterError, match="motion = 'still'; it must be one of steady, "):
+        Operating("still")

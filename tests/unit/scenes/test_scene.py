@@ -133,3 +133,22 @@ SHIPPED = [
 def test_shipped_scenes_are_readable(system, name):
     scene = read_scene(find_scene(find_system(system), name))
     assert scene.description and scene.t_end > scene.record_step
+
+
+def test_a_start_given_as_text_is_the_choice():
+    """Runs ask `scene.start is Start.REST`, which a text is not."""
+    assert Scene("mine", start="rest").start is Start.REST
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"start": "warm"}, "scene: start = 'warm'; it must be one of equilibrium, ramp, rest"),
+        ({"t_end": -1.0}, "scene: t_end = -1 s: it must be positive and finite"),
+        ({"record_step": 0.0}, "scene: record_step = 0 s: it must be positive and finite"),
+        ({"t_end": "1 s"}, "scene: t_end = '1 s': it takes a number of seconds"),
+    ],
+)
+def test_a_scene_of_a_script_is_checked_like_a_file(given, message):
+    with pytest.raises(ParameterError, match=re.escape(message)):
+        Scene("mine", **given)

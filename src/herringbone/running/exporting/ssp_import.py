@@ -10,6 +10,7 @@ from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.fmi.description.fmi2 import model_description
 from herringbone.fmi.native.started import starts_of_own_fmu
 from herringbone.scenes import Scene, Start
+from herringbone.scenes.checks import duration
 
 
 def load_ssp(file: str | Path) -> System:
@@ -31,10 +32,13 @@ def ssp_scene(file: str | Path) -> Scene:
 
     Raises:
         StructureError: the file cannot be read.
+        ParameterError: the stop time is not positive.
     """
     scene = Scene(Path(file).stem, start=Start.REST)
     stop_time = read_stop_time(file)
-    return scene if stop_time is None else replace(scene, t_end=stop_time)
+    if stop_time is None:
+        return scene
+    return replace(scene, t_end=duration(stop_time, f"{file}: stopTime"))
 
 
 def _recognised(part: PartSpec) -> PartSpec:
