@@ -8,8 +8,14 @@
 `tau` is the torque of the shaft on the rotor. Electrical power is T w / efficiency when driving and
 T w efficiency when braking.
 
+A Runge-Kutta step is never longer than 1 / (fastest own rate), of K_p / J, sqrt(K_i / J), K_i / K_p
+(of x while the torque limit acts) and 1 / ramp_time_constant: a light rotor would run away in the
+steps of `micro_step`.
+
 Source: K. J. Astrom and T. Hagglund, Advanced PID Control (2006), section 3.5 (anti-windup).
 """
+
+import math
 
 import numpy as np
 
@@ -111,8 +117,21 @@ _advance = steppers.body_stepper(_rhs, _out, _d)
 
 
 @kernel
+def _micro_step(b: np.ndarray) -> float:
+    """Longest Runge-Kutta step [s]."""
+    control = max(b[_K_P] / b[_INERTIA], math.sqrt(b[_K_I] / b[_INERTIA]))
+    others = max(b[_K_I] / b[_K_P], 1.0 / b[_TIME_CONSTANT])
+    return min(b[_MICRO_STEP], 1.0 / max(control, others))
+
+
+@kernel
+def _longest_step(b: np.ndarray) -> float:
+    return steppers.MOST_MICRO_STEPS * _micro_step(b)
+
+
+@kernel
 def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
-    return _advance(b, w, t, h, b[_MICRO_STEP], int(b[_DEGREE]))
+    return _advance(b, w, t, h, _micro_step(b), int(b[_DEGREE]))
 
 
 def _guess(block: np.ndarray) -> None:
@@ -177,5 +196,5 @@ DRIVE_MOTOR = Component(
     __doc__,
     guess=_guess,
     laws=_LAWS,
-    longest_step=steppers.longest_step(_d, "micro_step"),
+    longest_step=_longest_step,
 )

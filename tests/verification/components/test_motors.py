@@ -158,3 +158,47 @@ def test_ramp_inside_a_step(component, setpoint):
     expected = rate * (h - lag * (1 - math.exp(-h / lag)))
     name = "speed_reference" if component is DRIVE_MOTOR else "braking_torque"
     assert instance[name] == pytest.approx(expected, rel=1e-7)  # Runge-Kutta, see above
+
+
+def test_a_light_rotor_of_the_drive_motor_does_not_run_away():
+    """K_p / J = 1e5 / s: 5 in steps of 5e-5 s, beyond the 2.79 where Runge-Kutta is stable."""
+    drive = motor(DRIVE_MOTOR, inertia=3e-4, speed_setpoint=100.0, flange__tau=-5.0)
+    for k in range(200):
+        assert drive.step(k * 1e-3, 1e-3) == 0
+    # Slowest pole: K_i / K_p = 20 / s; torque and load differ by J w' alone.
+    assert drive["torque"] == pytest.approx(5.0, rel=1e-4)
+
+
+def test_the_integral_of_a_weak_proportional_gain_stays_at_the_torque_limit():
+    """K_i / K_p = 1.2e5 / s while the limit acts: x goes to limit / K_i."""
+    drive = motor(
+        DRIVE_MOTOR, inertia=5.0, proportional_gain=5e-3, torque_limit=1.0, speed_setpoint=100.0
+    )
+    assert drive.step(0.0, 0.01) == 0
+    assert drive["integral"] == pytest.approx(1.0 / 600.0, rel=1e-9)
+
+
+def test_a_light_rotor_of_the_load_motor_does_not_run_away():
+    """Friction / J = 6e4 / s: 3 in steps of 5e-5 s."""
+    load = motor(LOAD_MOTOR, inertia=1e-3, viscous_friction=60.0, flange__tau=6.0, speed=1.0)
+    for k in range(10):
+        assert load.step(k * 1e-3, 1e-3) == 0
+    assert load["flange.w"] == pytest.approx(0.1, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("component", "values", "rate"),
+    [
+        (DRIVE_MOTOR, {}, 2e4),  # as shipped, by micro_step
+        (DRIVE_MOTOR, {"integral_gain": 0.0}, 2e4),
+        (DRIVE_MOTOR, {"inertia": 3e-4}, 1e5),
+        (DRIVE_MOTOR, {"inertia": 1e-9, "proportional_gain": 1e-3, "integral_gain": 10.0}, 1e6),
+        (DRIVE_MOTOR, {"proportional_gain": 5e-3}, 1.2e5),
+        (LOAD_MOTOR, {}, 2e4),
+        (LOAD_MOTOR, {"inertia": 1e-3, "viscous_friction": 60.0}, 6e4),
+        (LOAD_MOTOR, {"torque_time_constant": 1e-4, "micro_step": 1e-4}, 1e4),
+    ],
+)
+def test_the_longest_step_follows_the_fastest_rate(component, values, rate):
+    """A call takes a million Runge-Kutta steps at most."""
+    assert motor(component, **values).longest_step() == pytest.approx(1e6 / rate, rel=1e-12)
