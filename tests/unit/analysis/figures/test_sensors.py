@@ -1,5 +1,6 @@
 """Sensors of a system: against the housing's frequency response; what is refused, with words."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -139,8 +140,31 @@ def test_sensors_have_whole_paths_and_take_values():
     assert not RIG.without("modal_housing").sensors
     with pytest.raises(ParameterError, match="sensor A has no parameter 'gain'; it has: high_pass"):
         check_sensors(RIG.with_values({"A.gain": 2.0}))
-    with pytest.raises(ParameterError, match="sensor A: bits = 40"):
+    with pytest.raises(ParameterError, match=r"sensor A\.bits = 40: it must lie between 0 and 32"):
         check_sensors(RIG.with_values({"A.bits": 40.0}))
+
+
+@pytest.mark.parametrize(
+    ("parameter", "value", "message"),
+    [
+        ("bits", 12.5, "bits = 12.5: it must be a whole number"),
+        ("anti_alias", 0.4, "anti_alias = 0.4: it must be a whole number"),
+        ("first_sample", -1.0, "first_sample = -1 s: it must lie between 0 and inf"),
+        ("sampling_hz", 1e6, "sampling_hz = 1e+06 Hz: it must lie between 0.001 and 100000"),
+    ],
+)
+def test_values_are_those_that_the_declaration_allows(parameter, value, message):
+    spec = replace(RIG.sensors["A"], values={parameter: value})
+    with pytest.raises(ParameterError, match=re.escape(f"sensor A.{message}")):
+        check_sensors(replace(RIG, sensors={"A": spec}))
+
+
+def test_rows_too_coarse_for_the_high_pass_have_a_reason():
+    """Its corner lies beyond half of their rate, where no filter can be made."""
+    spec = replace(RIG.sensors["A"], values={"high_pass_hz": 3e4})
+    found, refused = sensor_figures(with_sensors(0.05, system=replace(RIG, sensors={"A": spec})))
+    assert not found
+    assert "records every 2e-05 s are too coarse" in refused["A"]
 
 
 @pytest.mark.parametrize(

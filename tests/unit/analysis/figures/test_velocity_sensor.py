@@ -88,6 +88,8 @@ def test_columns():
         ({}, 0.0, "step = 0 s must be positive"),
         ({"range": 0.0}, STEP, "range = 0 m/s must be positive"),
         ({"bits": 40}, STEP, "bits = 40: it must lie between 0 and 32"),
+        ({"high_pass_hz": 5e3}, 5e-5, "too coarse for the sensor; it takes 2e-05 s"),
+        ({"high_pass_hz": np.inf}, STEP, "high_pass_hz = inf Hz must not be negative or infinite"),
         ({"high_pass_hz": -1.0}, STEP, "high_pass_hz = -1 Hz must not be negative"),
     ],
 )

@@ -22,6 +22,7 @@ from herringbone.analysis.gearboxes import gearbox_of_sensor
 from herringbone.components.registry import component_for
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.instance import check_value
 from herringbone.core.sensor_spec import SensorSpec
 from herringbone.cosim.structure.system import System
 from herringbone.housing import ModalHousing
@@ -186,7 +187,11 @@ def _figures(
 
 
 def chain_of(name: str, spec: SensorSpec) -> tuple[VelocitySensor, float]:
-    """The chain of a sensor, and the time of its first sample [s]."""
+    """The chain of a sensor, and the time of its first sample [s].
+
+    Raises:
+        ParameterError: unknown parameter, or a value that its declaration does not allow.
+    """
     declared = component_for(Role.SENSOR).declaration
     known: Mapping[str, float] = {v.name: v.start for v in declared.parameters}
     allowed = [k for k in known if k in {*_CHAIN, _FIRST}]
@@ -194,19 +199,18 @@ def chain_of(name: str, spec: SensorSpec) -> tuple[VelocitySensor, float]:
         raise ParameterError(
             f"sensor {name} has no parameter '{unknown[0]}'; it has: {', '.join(allowed)}"
         )
+    for key, value in spec.values.items():
+        check_value(f"sensor {name}", declared.variable(key), value)
     values = {k: spec.values.get(k, known[k]) for k in allowed}
-    try:
-        chain = VelocitySensor(
-            values["high_pass_hz"],
-            values["low_pass_hz"],
-            bool(values["anti_alias"]),
-            values["sampling_hz"],
-            values["range"],
-            int(values["bits"]),
-        )
-        return chain, values[_FIRST]
-    except ParameterError as error:
-        raise ParameterError(f"sensor {name}: {error}") from error
+    chain = VelocitySensor(
+        values["high_pass_hz"],
+        values["low_pass_hz"],
+        bool(values["anti_alias"]),
+        values["sampling_hz"],
+        values["range"],
+        int(values["bits"]),
+    )
+    return chain, values[_FIRST]
 
 
 def _even_times(time: np.ndarray, chain: VelocitySensor, first: float) -> tuple[np.ndarray, float]:

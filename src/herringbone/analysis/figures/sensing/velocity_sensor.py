@@ -22,7 +22,7 @@ from herringbone.kernels.sampling import ANTI_ALIAS_CORNER, ANTI_ALIAS_ORDER, co
 from herringbone.result.result import TIME, Result
 
 _FINEST = 5.0
-"""Least input rate over sampling rate, and over twice the low pass."""
+"""Least input rate over sampling rate, and over twice the highest corner."""
 _WHOLE = 1e-6
 _START = {v.name: v.start for v in component_for(Role.SENSOR).declaration.parameters}
 
@@ -64,8 +64,10 @@ class VelocitySensor:
     def __post_init__(self) -> None:
         """Check; raises ParameterError."""
         for name, lowest in (("high_pass_hz", 0.0), ("low_pass_hz", 0.0)):
-            if not getattr(self, name) >= lowest:
-                raise ParameterError(f"{name} = {getattr(self, name):g} Hz must not be negative")
+            if not lowest <= getattr(self, name) < np.inf:
+                raise ParameterError(
+                    f"{name} = {getattr(self, name):g} Hz must not be negative or infinite"
+                )
         for name, unit in (("sampling_hz", "Hz"), ("range", "m/s")):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise ParameterError(f"{name} = {getattr(self, name):g} {unit} must be positive")
@@ -124,7 +126,8 @@ class VelocitySensor:
         """
         if not 0.0 < step < np.inf:
             raise ParameterError(f"step = {step:g} s must be positive")
-        needed = max(self.sampling_hz, 2.0 * self.low_pass_hz) * _FINEST
+        corner = max(self.high_pass_hz, self.low_pass_hz)
+        needed = max(self.sampling_hz, 2.0 * corner) * _FINEST
         if 1.0 / step < needed * (1.0 - _WHOLE):
             raise ParameterError(
                 f"records every {step:g} s are too coarse for the sensor; it takes "
