@@ -17,6 +17,7 @@ from herringbone.analysis.slopes import slopes
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.registry import component
 from herringbone.core import EquilibriumError
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.names import first_of
 from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System
@@ -112,9 +113,28 @@ def _why(system: System, twin: Twin, x: np.ndarray, worst: str) -> str:
             "make 1, or for a shaft that is held"
         )
     return (
-        f"{worst} does not vanish; look for {_nothing_carries(system)}a load there that nothing "
+        f"{worst} does not vanish; look for {_nothing_carries(system)}{_overrun(twin, x)}a load "
+        "there that nothing "
         f"balances or that is beyond what drives, or start a run with {option('start', 'rest')}"
     )
+
+
+def _overrun(twin: Twin, x: np.ndarray) -> str:
+    """Couplings that hand on nothing though they have an angle that must stay; "": there is none.
+
+    Such a one carries while its angle is constant; while it is overrun the angle runs.
+    """
+    columns, angles = [], []
+    for instance in twin.instances:
+        d = instance.component.declaration
+        own = [v.name for v in d.states if v.steady == "constant" and v.unit == "rad"]
+        torque = next((v.name for v in d.outputs if v.quantity == Quantity.TORQUE), "")
+        if Role.COUPLING in d.roles and own and torque:
+            columns.append(f"{instance.name}.{torque}")
+            angles.append(f"{instance.name}.{own[0]}")
+    torques = twin.observe(np.zeros(1), x[:, None], columns)[0] if columns else []
+    found = [angle for angle, torque in zip(angles, torques, strict=True) if torque == 0.0]
+    return f"{first_of(found, _SHOWN)}, which is not constant while overrun, " if found else ""
 
 
 def _nothing_carries(system: System) -> str:

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from support.rig.drivetrains import J1, instance, system
 
+from herringbone.analysis.equilibrium import equilibrium
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.drivetrain.elastic_shaft import ELASTIC_SHAFT, MODES
 from herringbone.components.drivetrain.freewheel import FREEWHEEL
+from herringbone.core import EquilibriumError
 
 TWIN = 1e-8
 """Of its tolerance 1e-10, over some ten periods."""
@@ -130,3 +132,22 @@ def test_a_freewheel_that_is_overrun_gives_back_what_its_twist_holds():
     assert work == pytest.approx(0.5 * 6e4 * 1e-6, rel=1e-3)
     assert found["torque"] == 0.0
     assert found["free_angle"] < 0.0
+
+
+def test_a_start_that_is_overrun_does_not_exist_and_names_the_free_angle():
+    """A governor holds 100 rad/s behind a source of 90: free_angle would run for ever."""
+    governor = {"nominal_torque": 40.0, "nominal_speed": 100.0, "constant_share": 5.0}
+    parts = {
+        "slow": ("speed_source", {"speed_setpoint": 90.0, "speed": 90.0}),
+        "fast": ("rotating_inertia", {"inertia": J1, "speed": 100.0}),
+        "governor": ("torque_source", {**governor, "linear_share": -5.0}),
+        "wheel": ("freewheel", {}),
+    }
+    joined = (
+        ("slow.flange", "wheel.flange_a"),
+        ("fast.flange_a", "wheel.flange_b"),
+        ("fast.flange_b", "governor.flange"),
+    )
+    told = r"look for wheel\.free_angle, which is not constant while overrun, a load"
+    with pytest.raises(EquilibriumError, match=told):
+        equilibrium(system(parts, *joined))
