@@ -83,8 +83,8 @@ class Operating:
 
     Attributes:
         motion: what kind of; a text becomes the choice that it names.
-        speed: of the pinion [rad/s].
-        torque: at the pinion [N m].
+        speed: set point that the system declares, at its own shaft [rad/s].
+        torque: the same [N m].
     """
 
     motion: Motion = Motion.STEADY

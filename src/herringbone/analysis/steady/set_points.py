@@ -18,8 +18,8 @@ class Point(NamedTuple):
     """An operating point; None: as the system has it.
 
     Attributes:
-        speed: of the pinion [rad/s].
-        torque: at the pinion [N m].
+        speed: set point that the system declares, at its own shaft [rad/s].
+        torque: the same [N m].
         values: other variables, by `instance.variable`.
     """
 
