@@ -7,6 +7,7 @@ import pytest
 
 from herringbone.components.bearing_supports import BEARING_SUPPORTS
 from herringbone.components.ports import HALVES
+from herringbone.components.shipped_pair import SHIPPED_PAIR
 from herringbone.core import Instance
 
 MOTIONS = [v.name for v in BEARING_SUPPORTS.declaration.inputs]
@@ -145,6 +146,17 @@ def test_axial_values_per_shaft_are_halved_at_each_half():
         name = f"{side}.wheel_left.f_z"
         assert shaft[name] == pytest.approx(0.5 * half[name], rel=1e-15)
     assert shaft["shaft.wheel_left.f_y"] == half["shaft.wheel_left.f_y"]
+
+
+@pytest.mark.parametrize(("per_shaft", "ratio"), [(0.0, 0.02), (1.0, 0.02 / math.sqrt(2.0))])
+def test_axial_damping_ratio_of_a_wheel_half(per_shaft, ratio):
+    """As the description says: 2 %, and 1.41 % where the values are those of a shaft."""
+    stiffness, damping = (
+        -bearings({f"shaft.wheel_left.{q}": 1.0}, axial_per_shaft=per_shaft)["shaft.wheel_left.f_z"]
+        for q in ("s_z", "v_z")
+    )
+    critical = 2.0 * math.sqrt(stiffness * SHIPPED_PAIR.half_mass[1])
+    assert damping / critical == pytest.approx(ratio, rel=1e-12)
 
 
 CLEARANCE = 10e-6  # diametral

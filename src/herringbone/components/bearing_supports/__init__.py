@@ -25,7 +25,9 @@ are stable only for h < 4/3 zeta / w with the local w, zeta; `herringbone stabil
 limit of a system. A master that steps it after the bodies, over the same interval, has no delay.
 
 Source: the thesis, table 3.1 (radial 6.34e8 N/m, axial 2.03e8 N/m, read as per half of the wheel);
-damping 2 % of the local critical damping of a half-body, a choice of this project.
+damping 2 % of the local critical damping of a half-body, a choice of this project. With
+`axial_per_shaft` 1 the axial ratio is 1.41 %, 2 % / sqrt(2): stiffness and damping are halved, and
+the ratio goes by damping / sqrt(stiffness).
 """
 
 import numpy as np
