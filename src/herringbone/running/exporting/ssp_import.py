@@ -32,11 +32,11 @@ def ssp_scene(file: str | Path) -> Scene:
 
     Raises:
         StructureError: the file cannot be read.
-        ParameterError: the stop time is not positive.
+        ParameterError: the stop time is negative.
     """
     scene = Scene(Path(file).stem, start=Start.REST)
     stop_time = read_stop_time(file)
-    if stop_time is None:
+    if not stop_time:  # none, or an experiment without duration
         return scene
     return replace(scene, t_end=duration(stop_time, f"{file}: stopTime"))
 
