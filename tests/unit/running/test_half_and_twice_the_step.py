@@ -1,9 +1,14 @@
 """What half and twice the step tell of a run's error, of differences that are known."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from herringbone.analysis.accuracy.apart import Apart
+from herringbone.core import Outcome
+from herringbone.running.steps import error_by_steps
 from herringbone.running.steps.error_by_steps import _by_falls, _falls, _tell
+from herringbone.scenes import Scene
 
 
 def differences(error, power):
@@ -46,3 +51,19 @@ def test_when_the_first_part_tells():
     assert not _tell(errors, falls, begun, {"a": 15.0, "b": 0.7})
     assert not _tell(errors, falls, begun, {"a": 2.0, "b": 0.7})
     assert not _tell(errors, falls | {"a": 1.9}, begun, begun)
+
+
+def test_a_stopped_run_with_another_step_is_the_last_one(monkeypatch):
+    made = []
+
+    def with_step(system, scene, found, asked, step):
+        made.append(step)
+        return SimpleNamespace(result=SimpleNamespace(outcome=Outcome.interrupted(0.25)))
+
+    monkeypatch.setattr(error_by_steps, "with_step", with_step)
+    monkeypatch.setattr(error_by_steps, "with_half_step", None)
+    run = SimpleNamespace(noted=lambda line: line)
+    found = SimpleNamespace(once=False, recording=SimpleNamespace(step=1e-4))
+    told = error_by_steps.verified_by_other_steps(run, None, Scene("s", t_end=1.0), found, None)
+    assert told == "the error is not known: a run with another step was stopped at 0.25 s"
+    assert made == [2e-4]

@@ -18,10 +18,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from herringbone.analysis.accuracy.apart import Apart, apart
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, Outcome, OutcomeKind
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import TIME, Result
-from herringbone.result.verification import Verification
+from herringbone.result.verification import Verification, error_unknown
 from herringbone.running.coupled import Coupled
 from herringbone.running.coupling_choice import Asked
 from herringbone.running.reporting.run_result import with_coupling_row
@@ -70,13 +70,23 @@ def verified_by_other_steps(
             "process; in child processes (on Linux, without --in-process) it is told"
         )
     others = _Others(result, system, scene, found, asked)
-    twice = others.run(2.0)
-    verification = others.by_half(twice) or others.by_longer(twice)
+    try:
+        twice = others.run(2.0)
+        verification = others.by_half(twice) or others.by_longer(twice)
+    except _StoppedError as stopped:
+        return result.noted(error_unknown(stopped.outcome, "a run with another step"))
     if verification is None:
         return result.noted(
             "the error is not known: with half the step and with twice the step no run ends well"
         )
     return with_coupling_row(replace(result, verification=verification))
+
+
+class _StoppedError(Exception):
+    """The user has stopped a run with another step, and waits for no further one."""
+
+    def __init__(self, outcome: Outcome) -> None:
+        self.outcome = outcome
 
 
 @dataclass(frozen=True)
@@ -125,7 +135,11 @@ class _Others:
         return _by_falls(longer, falls, 2.0 * self.found.recording.step, how)
 
     def run(self, times: float, end: float | None = None) -> Result | None:
-        """The run with another step up to a time [s]; None if it does not end well."""
+        """The run with another step up to a time [s]; None if it does not end well.
+
+        Raises:
+            _StoppedError: by the user.
+        """
         step, scene = times * self.found.recording.step, self.scene
         scene = replace(scene, t_end=end or scene.t_end)
         if step > scene.t_end:
@@ -137,7 +151,10 @@ class _Others:
                 found = with_step(self.system, scene, self.found, self.asked, step)
         except HerringboneError:  # no reason to lose a run that has ended
             return None
-        return found.result if found.result.outcome.ended_well else None
+        outcome = found.result.outcome
+        if outcome.kind is OutcomeKind.INTERRUPTED:
+            raise _StoppedError(outcome)
+        return found.result if outcome.ended_well else None
 
     def _halved(self, end: float, own: Result | None = None) -> Apart | None:
         """Differences from the run with half the step up to a time [s]; None: it is not taken."""
