@@ -52,6 +52,17 @@ def temporary_folder() -> Iterator[Path]:
         remove_temporary_folder(folder)
 
 
+@contextlib.contextmanager
+def filled_folder() -> Iterator[Path]:
+    """A folder that stays, unless what fills it raises or is interrupted."""
+    folder = make_temporary_folder()
+    try:
+        yield folder
+    except BaseException:
+        remove_temporary_folder(folder)
+        raise
+
+
 def _locked(folder: Path) -> int:
     """Descriptor of a folder, locked; raises OSError if another process has it."""
     import fcntl  # noqa: PLC0415 (not on Windows)

@@ -12,7 +12,7 @@ from fmpy.model_description import ModelDescription, read_model_description
 
 from herringbone.core import FmuError
 from herringbone.core.places.files import is_file, is_folder
-from herringbone.core.places.temporary import make_temporary_folder, remove_temporary_folder
+from herringbone.core.places.temporary import filled_folder
 from herringbone.core.reading.archives import open_archive
 from herringbone.core.reading.numbers import number
 from herringbone.core.reading.xml import LARGEST_XML, parse_xml
@@ -126,17 +126,12 @@ def extract_fmu(file: Path) -> Path:
     Raises:
         FmuError: the folder for temporary files has a path that pythonfmu cannot decode.
     """
-    folder = make_temporary_folder()
-    if not str(folder).isascii() or "#" in str(folder) or "%" in str(folder):
-        remove_temporary_folder(folder)
-        raise FmuError(
-            f"temporary folder {folder} has characters that Python FMUs cannot load from; "
-            "set TMPDIR to a plain ASCII path"
-        )
-    try:
+    with filled_folder() as folder:
+        if not str(folder).isascii() or "#" in str(folder) or "%" in str(folder):
+            raise FmuError(
+                f"temporary folder {folder} has characters that Python FMUs cannot load from; "
+                "set TMPDIR to a plain ASCII path"
+            )
         with open_archive(file, "an FMU", FmuError) as archive:
             archive.extract(folder)
-    except BaseException:  # Ctrl-C, too
-        remove_temporary_folder(folder)
-        raise
     return folder

@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 from herringbone.core import StructureError
 from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.places.files import is_file, is_folder
-from herringbone.core.places.temporary import make_temporary_folder, remove_temporary_folder
+from herringbone.core.places.temporary import filled_folder, remove_temporary_folder
 from herringbone.core.reading.archives import open_archive
 from herringbone.core.reading.texts import read_bytes
 from herringbone.core.reading.xml import LARGEST_XML, parse_xml
@@ -55,13 +55,8 @@ def unpack(file: Path) -> Path:
 
 
 def _unpack(file: Path) -> Path:
-    with open_archive(file, "an .ssp file", StructureError) as archive:
-        folder = make_temporary_folder()
-        try:
-            archive.extract(folder)
-        except BaseException:
-            remove_temporary_folder(folder)
-            raise
+    with open_archive(file, "an .ssp file", StructureError) as archive, filled_folder() as folder:
+        archive.extract(folder)
     atexit.register(remove_temporary_folder, folder)
     return folder
 
