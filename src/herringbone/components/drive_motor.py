@@ -125,11 +125,6 @@ def _micro_step(b: np.ndarray) -> float:
 
 
 @kernel
-def _longest_step(b: np.ndarray) -> float:
-    return steppers.MOST_MICRO_STEPS * _micro_step(b)
-
-
-@kernel
 def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return _advance(b, w, t, h, _micro_step(b), int(b[_DEGREE]))
 
@@ -196,5 +191,5 @@ DRIVE_MOTOR = Component(
     __doc__,
     guess=_guess,
     laws=_LAWS,
-    longest_step=_longest_step,
+    longest_step=steppers.longest_step_by(_d, _micro_step),
 )

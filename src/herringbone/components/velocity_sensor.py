@@ -158,15 +158,14 @@ def _micro_step(b: np.ndarray) -> float:
 
 
 @kernel
-def _longest_step(b: np.ndarray) -> float:
-    return steppers.MOST_MICRO_STEPS * _micro_step(b)
-
-
-@kernel
 def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return _advance(b, w, t, h, _micro_step(b), int(b[_DEGREE]))
 
 
 VELOCITY_SENSOR = Component(
-    _d, Kernels(_step, _rhs, _out), __doc__, samples=True, longest_step=_longest_step
+    _d,
+    Kernels(_step, _rhs, _out),
+    __doc__,
+    samples=True,
+    longest_step=steppers.longest_step_by(_d, _micro_step),
 )

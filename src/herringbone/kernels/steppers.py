@@ -53,6 +53,23 @@ def longest_step(declaration: Declaration, micro_step: str) -> Callable[[np.ndar
     return longest
 
 
+def longest_step_by(
+    declaration: Declaration, micro_step: Callable[[np.ndarray], float]
+) -> Callable[[np.ndarray], float]:
+    """As `longest_step`, of a body whose own rates bound its micro steps, too.
+
+    Args:
+        declaration: of the component.
+        micro_step: kernel (b): the longest one [s].
+    """
+
+    @inner(declaration.name)
+    def longest(b: np.ndarray) -> float:
+        return MOST_MICRO_STEPS * micro_step(b)
+
+    return longest
+
+
 def input_kernels(declaration: Declaration, at: int) -> tuple[Callable, Callable, Callable]:
     """Compile what a body's stepper does with inputs that are polynomials over the macro step.
 

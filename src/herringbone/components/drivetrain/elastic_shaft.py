@@ -143,9 +143,6 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return _advance(b, w, t, h, _micro_step(b), int(b[_DEGREE]))
 
 
-@kernel
-def _longest_step(b: np.ndarray) -> float:
-    return steppers.MOST_MICRO_STEPS * _micro_step(b)
-
-
-ELASTIC_SHAFT = Component(_d, Kernels(_step, _rhs, _out), __doc__, longest_step=_longest_step)
+ELASTIC_SHAFT = Component(
+    _d, Kernels(_step, _rhs, _out), __doc__, longest_step=steppers.longest_step_by(_d, _micro_step)
+)
