@@ -54,9 +54,7 @@ def ladder(steps: Sequence[float], t_end: float) -> list[Grid]:
     Raises:
         ParameterError: a step is not positive and finite, or none is left.
     """
-    long = [step for step in steps if step > t_end > 0.0]
-    grids = [make_grid(t_end, step, step) for step in steps if step not in long]
-    by_count = {g.count: g for g in grids if g.count >= FEWEST_STEPS}
+    by_count = {g.count: g for step in steps if (g := _long_enough(step, t_end)) is not None}
     found = sorted(by_count.values(), key=lambda g: g.step)
     if not found:
         raise ParameterError(
@@ -68,16 +66,19 @@ def ladder(steps: Sequence[float], t_end: float) -> list[Grid]:
 
 def left_out(steps: Sequence[float], t_end: float) -> tuple[str, ...]:
     """A line on the steps [s] that `ladder` leaves out, as their runs are too short; else none."""
-    short = [f"{step:g}" for step in steps if not _counts(step, t_end)]
+    short = [f"{step:g}" for step in steps if _long_enough(step, t_end) is None]
     if not short:
         return ()
     line = f"fewer than {FEWEST_STEPS} macro steps in {t_end:g} s, left out"
     return (f"{option('steps')}: {first_of(short, _NAMED)} s: {line}",)
 
 
-def _counts(step: float, t_end: float) -> bool:
-    """True if a run of this step is long enough to say something."""
-    return step <= t_end and make_grid(t_end, step, step).count >= FEWEST_STEPS
+def _long_enough(step: float, t_end: float) -> Grid | None:
+    """Communication points of a run; None if they are too few to say something."""
+    if step > t_end > 0.0:
+        return None
+    grid = make_grid(t_end, step, step)
+    return grid if grid.count >= FEWEST_STEPS else None
 
 
 class Reference:
