@@ -9,7 +9,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.housing.contract import compliance_of, usual_compliance
 from herringbone.components.in_process import InProcessPart, part_variables
 from herringbone.components.registry import component
-from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
+from herringbone.core import FmuError, HerringboneError, Instance
 from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.declaring.roles import Role
 from herringbone.core.given import check_reference
@@ -35,6 +35,7 @@ from herringbone.running.housings.fmu_remarks import (
     untested,
 )
 from herringbone.scenes import Scene, Start, find_scene, read_scene
+from herringbone.scenes.checks import chosen
 from herringbone.scenes.scene import DEFAULT_SCENE
 
 _declared: Remembered[dict[str, PartVariable]] = Remembered(64)
@@ -85,15 +86,13 @@ def with_options(
     Raises:
         ParameterError: there is no such start.
     """
-    if start is not None and start not in list(Start):
-        raise ParameterError(f"start = {start!r}; it must be one of {', '.join(Start)}")
     here = Path.cwd()
     given = {path: beside(value, here) for path, value in as_texts(values).items()}
     return replace(
         scene,
         t_end=scene.t_end if t_end is None else t_end,
         record_step=scene.record_step if record_step is None else record_step,
-        start=scene.start if start is None else Start(start),
+        start=scene.start if start is None else chosen(Start, start, "start"),
         values={**scene.values, **given},
     )
 
