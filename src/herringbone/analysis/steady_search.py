@@ -114,8 +114,8 @@ def _why(system: System, twin: Twin, x: np.ndarray, worst: str) -> str:
         )
     return (
         f"{worst} does not vanish; look for {_nothing_carries(system)}{_overrun(twin, x)}a load "
-        "there that nothing "
-        f"balances or that is beyond what drives, or start a run with {option('start', 'rest')}"
+        "there that nothing balances or that is beyond what drives, or start a run with "
+        f"{option('start', 'rest')}"
     )
 
 

@@ -3,7 +3,7 @@
 import os
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, chdir, contextmanager, nullcontext
+from contextlib import ExitStack, chdir, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock
@@ -35,7 +35,7 @@ class _Working:
 
     def __init__(self) -> None:
         self.lock, self.count, self.folder = Lock(), 0, Path()
-        self.change: AbstractContextManager[None] = nullcontext()
+        self.change = ExitStack()
 
 
 _working = _Working()
@@ -177,8 +177,8 @@ def _in_folder(folder: str) -> Iterator[None]:
             )
         if not _working.count:
             _working.folder = Path(folder)
-            _working.change = nullcontext() if Path.cwd() == Path(folder) else chdir(folder)
-            _working.change.__enter__()
+            if Path.cwd() != Path(folder):
+                _working.change.enter_context(chdir(folder))
         _working.count += 1
     try:
         yield
@@ -186,7 +186,7 @@ def _in_folder(folder: str) -> Iterator[None]:
         with _working.lock:
             _working.count -= 1
             if not _working.count:
-                _working.change.__exit__(None, None, None)
+                _working.change.close()
 
 
 def cpu_seconds() -> float:
