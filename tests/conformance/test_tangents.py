@@ -24,7 +24,8 @@ def _operating_point(component: Component) -> np.ndarray:
     if component.name == "gear_mesh":
         block[: count // 2] *= 1e-7
         block[count // 2 : count] *= 1e-3
-        for name, value in (("approach", 4e-6), ("symmetry_deviation", 1e-5), ("impact_force", 9)):
+        there = {"approach": 4e-6, "der(angle)": 100, "symmetry_deviation": 1e-5, "impact_force": 9}
+        for name, value in there.items():
             block[d.index[name]] = value
     return block
 

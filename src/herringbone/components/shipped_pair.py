@@ -18,6 +18,7 @@ SHIPPED_PAIR = PairValues(
     face_width=0.0473,
     backlash=0.00018,
     coast_phase=0.10363577557402692,
+    total_contact_ratio=3.553240495806686,
     mesh_damping_ratio=0.1,
     shaft_damping_ratio=0.02,
     bearing_damping_ratio=0.02,

@@ -50,6 +50,7 @@ def pair_values(job: GearJob) -> tuple[PairValues, tuple[str, ...]]:
         face_width=pair.face_width,
         backlash=backlash,
         coast_phase=_coast_phase(pair, backlash) % 1.0,
+        total_contact_ratio=pair.total_contact_ratio,
         mesh_damping_ratio=mesh.damping_ratio,
         shaft_damping_ratio=mesh.shaft_damping_ratio,
         bearing_damping_ratio=mesh.bearing_damping_ratio,

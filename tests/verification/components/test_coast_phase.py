@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from support.gearing.gear_mesh import INDEX, SHIPPED, STATES, gear_pair, set_states
 
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.core import Instance
@@ -74,3 +75,31 @@ def test_phases_of_both_flanks_add_up(angle):
     for s in coast:
         found = phase + s / pitch + lead - gear["coast_phase"]
         assert found - round(found) == pytest.approx(0.0, abs=1e-9)  # of the root search
+
+
+def coast_forces(angles: np.ndarray, rate: float, **parameters: float) -> np.ndarray:
+    """Forces of the left mesh at 4 um on the coast flank, at angles of the pinion's phase."""
+    gear = gear_pair(SHIPPED, {"flank": -1.0, **parameters})
+    x, found = np.zeros(STATES), []
+    x[INDEX["approach"]] = -(gear["backlash"] + 4e-6) / math.cos(gear["base_helix_angle"])
+    x[INDEX["der(angle)"]] = rate
+    for angle in angles:
+        x[INDEX["angle"]] = angle
+        set_states(gear, x)
+        found.append(gear["mesh_left.force"])
+    return np.array(found)
+
+
+def test_impact_of_the_coast_flank_begins_as_tips_of_the_pinion_enter():
+    """Turning forward, the section that `places` looks at is the first to touch."""
+    pitch, ra, (_, rb2) = PAIR.transverse_base_pitch, PAIR.tip_radius, PAIR.base_radius
+    length = math.sqrt(ra[0] ** 2 - RB**2) + math.sqrt(ra[1] ** 2 - rb2**2)
+    length -= (RB + rb2) * math.tan(ALPHA)
+    turn = (places(0.0, -1)[0] - length) / RB
+    assert min(abs(s - length) for s in places(turn, -1)) < 1e-9
+    entered = places(turn, 1)[0] / pitch + np.array([-0.1, -0.01, 0.0, 0.05, 0.1, 0.15, 0.2])
+    angles = 2.0 * math.pi * entered / TEETH
+    impact = coast_forces(angles, 100.0, impact_force=50.0) - coast_forces(angles, 100.0)
+    assert -impact == pytest.approx([0.0, 0.0, 0.0, 25.0, 50.0, 25.0, 0.0], abs=1e-6)
+    backward = coast_forces(angles, -100.0, impact_force=50.0) - coast_forces(angles, -100.0)
+    assert abs(backward + impact).max() > 10.0

@@ -30,10 +30,14 @@ class Reaction(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """A contact: x and x' as depth and rate, e without R, its slopes over both halves' angles."""
+    """A contact: x and x' as depth and rate, e without R, its slopes over both halves' angles.
+
+    rises: whether its phase does.
+    """
 
     flank: int
     phase: float
+    rises: bool
     depth: float
     rate: float
     error: float
@@ -95,7 +99,8 @@ class Contacts:
         rate = flank * approach_rate - error_rate
         own = phase if flank == DRIVE else p["coast_phase"] - phase
         load = self.teeth[side, flank].load(own, depth, ramp[0])
-        return Contact(flank, own, depth, rate, error, slopes, load)
+        rises = rates[0] >= 0.0 if flank == DRIVE else rates[0] <= 0.0
+        return Contact(flank, own, rises, depth, rate, error, slopes, load)
 
     def _pressure(self, side, contact, apart):
         """P [N]; apart: no flank of the mesh touches."""
@@ -109,7 +114,7 @@ class Contacts:
         v = min(1.0, max(0.0, load.depth / p["damping_transition"]))
         gate = v * v * (3.0 - 2.0 * v)
         carries = contact.flank == (COAST if p["flank"] < 0.0 else DRIVE)
-        impact = p["impact_force"] * gate * self._impact(contact.phase) if carries else 0.0
+        impact = p["impact_force"] * gate * self._impact(contact) if carries else 0.0
         damping = self._damping(tangent) * contact.rate
         if gated:
             return max(0.0, load.force + impact + gate * damping)
@@ -121,9 +126,12 @@ class Contacts:
             2.0 * self.parameters["mesh_damping_ratio"] * math.sqrt(max(0.0, tangent) * self.mass)
         )
 
-    def _impact(self, phase):
+    def _impact(self, contact):
         """h of the README."""
-        part = phase % 1.0 / self.parameters["impact_duration"]
+        entered = contact.phase
+        if not contact.rises:
+            entered = self.parameters["total_contact_ratio"] - entered
+        part = entered % 1.0 / self.parameters["impact_duration"]
         return (1.0 - math.cos(2.0 * math.pi * part)) / 2.0 if part < 1.0 else 0.0
 
     def _error(self, side, flank, angles):

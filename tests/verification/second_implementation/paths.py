@@ -112,6 +112,7 @@ PATHS = {
     "axial values per shaft": _bearings(_BOX, axial_per_shaft=0.0),
     "phase of the coast flank": _gear(_COAST, coast_phase=0.2),
     "impact on the coast flank": _gear(_COAST, flank=1.0),
+    "impact as teeth enter on the coast flank": _gear(_COAST, total_contact_ratio=3.2),
     "line of action of the coast flank": _bearings(_COAST, flank=1.0),
     "damping's transition": _gear(_LIGHT, damping_transition=1e-9),
     "ungated damping": _gear(_UNGATED, damping_gate=1.0),

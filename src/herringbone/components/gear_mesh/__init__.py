@@ -77,8 +77,8 @@ pinion's teeth are thicker, along the base circle and over p_bt. Whole periods d
 energy U(p, x) (both below); x' is the depth's rate:
 
     damping_gate 1: P = max(0, F(p, x) + q r h(p) + C r x')       (0 where F <= 0)
-    damping_gate 0: P = F(p, x) + q r h(p) + C x';  open flanks: P = C x' on the drive flank, with
-                    k at x = 1e-12 m, while x > -backlash
+    damping_gate 0: P = F(p, x) + q r h(p) + C x';  both flanks open: P = C x' on the drive flank,
+                    with k at x = 1e-12 m (of a flank with deviations at max(x, 1e-12 m))
     C = 2 zeta sqrt(max(0, k) m_e),   m_e = 1 / (rb1^2 / I_pinion + rb2^2 / I_wheel),   I: of a half
     r = v^2 (3 - 2 v),   v = min(1, x / damping_transition)
 
@@ -91,9 +91,10 @@ separation to contact at 0.71 of its natural frequency ungated, at 0.58 gated: i
 nothing is lost. Without separation both are the same above the transition.
 
 h is the meshing impact of the flank that carries: q is impact_force there, 0 on the other flank;
-h(p) = (1 - cos(2 pi f / impact_duration)) / 2 where f, the fractional part of p, is below
-impact_duration, else 0. p is the phase of the contact itself, on either flank; where it falls, as
-on the coast flank turning forward, h comes as teeth leave.
+h(p) = (1 - cos(2 pi f / impact_duration)) / 2 where f is below impact_duration, else 0. f is how
+many mesh periods ago teeth entered: the fractional part of p where the phase p of the contact
+rises, that of total_contact_ratio - p where it falls. With w = theta1', it rises on the drive flank
+where w >= 0, on the coast flank where w <= 0.
 
 **Normal force** of a mesh: N = P on the drive flank, -P on the coast flank (their sum, if both
 should touch).
@@ -138,8 +139,9 @@ otherwise power would be created.
 **Outputs.** `mesh_*.force` is N; `mesh_*.deflection` is delta - e_drive, or delta + e_coast if the
 coast flank carries: the deflection of the teeth while they touch. `transmission_error` is the mean
 of both halves' rb1 theta_pinion - rb2 theta_wheel. `time_outside_table` and `time_on_other_flank`
-add up steps at whose end a mesh is loaded outside its table, or on the flank that does not carry;
-there the direction of the separating force is wrong. With deviations the mean depth counts there.
+(not outputs, but variables of the FMU) add up communication steps at whose end a mesh is loaded
+outside its table, or on the flank that does not carry; there the direction of the separating force
+is wrong. With deviations the mean depth counts there.
 
 **Integration**: classical Runge-Kutta with `micro_step`. A micro step in which a force bends (teeth
 meet or part, their damping becomes whole, or would pull) is taken again in 8 parts, as its order is

@@ -62,7 +62,7 @@ def _flank(
     g = min(1.0, depth * b[at.PER_TRANSITION])
     g *= g * (3.0 - 2.0 * g)
     if b[at.IMPACT] > 0.0 and (f > 0.0) == (b[at.FLANK] >= 0.0):
-        force += g * impact(b, phase)
+        force += g * impact(b, f, phase)
     if b[at.GATE] == 0.0:
         return force + damping * rate, slope
     return max(0.0, force + damping * g * rate), slope

@@ -19,9 +19,10 @@ def wheel(b: np.ndarray, order: int) -> float:
 
 
 @rare
-def impact(b: np.ndarray, phase: float) -> float:
-    """Force [N] of the meshing impact."""
-    into = (phase - math.floor(phase)) / b[at.IMPACT_DURATION]
+def impact(b: np.ndarray, f: float, phase: float) -> float:
+    """Force [N] of the meshing impact at a phase of flanks (f: 1 drive, -1 coast)."""
+    entered = phase if f * b[at.ANGLE + at.RATE] >= 0.0 else b[at.CONTACT_RATIO] - phase
+    into = (entered - math.floor(entered)) / b[at.IMPACT_DURATION]
     return 0.5 * b[at.IMPACT] * (1.0 - cosine(at.TWO_PI * into)) if into < 1.0 else 0.0
 
 

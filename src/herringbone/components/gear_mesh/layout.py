@@ -110,9 +110,9 @@ TE, OFFSET, OUTSIDE, OTHER_FLANK, PAIR_KNOWN, RAMP_FROM = _d.indices(
     "table_of_this_pair",
     "first_angle",
 )
-BETA, ZETA, TRANSITION, GATE, BACKLASH, FLANK, COAST_PHASE, STAGGER = _d.indices(
+BETA, ZETA, TRANSITION, GATE, BACKLASH, FLANK, COAST_PHASE, CONTACT_RATIO, STAGGER = _d.indices(
     "base_helix_angle", "mesh_damping_ratio", "damping_transition", "damping_gate", "backlash",
-    "flank", "coast_phase", "stagger",
+    "flank", "coast_phase", "total_contact_ratio", "stagger",
 )  # fmt: skip
 F_A, C0, C1, C2, PHI1, PHI2 = _d.indices(
     "symmetry_deviation", "symmetry_constant", "symmetry_pinion", "symmetry_wheel",

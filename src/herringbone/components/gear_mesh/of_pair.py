@@ -15,6 +15,7 @@ def of_pair(pair: PairValues, own: Mapping[str, float]) -> dict[str, float]:
         "mesh_damping_ratio": pair.mesh_damping_ratio,
         "backlash": pair.backlash,
         "coast_phase": pair.coast_phase,
+        "total_contact_ratio": pair.total_contact_ratio,
     }
     for gear, name in enumerate(GEARS):
         damping = pair.shaft_damping(gear)

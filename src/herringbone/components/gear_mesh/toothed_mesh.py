@@ -64,7 +64,7 @@ def _pressure(
     g = max(0.0, min(1.0, x * b[at.PER_TRANSITION]))
     g *= g * (3.0 - 2.0 * g)
     if b[at.IMPACT] > 0.0 and (f > 0.0) == (b[at.FLANK] >= 0.0):
-        force += g * impact(b, phase)
+        force += g * impact(b, f, phase)
     if b[at.GATE] == 0.0:
         return force + damping * rate
     return max(0.0, force + damping * g * rate)

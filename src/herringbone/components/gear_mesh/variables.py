@@ -149,6 +149,8 @@ def _mesh_parameters() -> list[Variable]:
           minimum=-1, maximum=1, whole=True, quantity=Quantity.CARRYING_FLANK),
         of("coast_phase", "1",
            "phase of the drive flank plus that of the coast flank, mesh periods"),
+        of("total_contact_ratio", "1",
+           "epsilon_gamma of a half: where teeth enter on flanks whose phase falls", minimum=0),
         p("stagger", "1", "right half ahead of left half, mesh periods", 0.0),
         p("symmetry_deviation", "m", "f_A: axial offset of the chevron's apex", 0.0,
           minimum=-0.01, maximum=0.01),

@@ -25,6 +25,7 @@ class PairValues:
         face_width: of one half [m].
         backlash: normal [m].
         coast_phase: phase of the drive flank plus that of the coast flank, 0 to 1 [mesh periods].
+        total_contact_ratio: epsilon_gamma, of one half.
         mesh_damping_ratio: zeta of the meshes.
         shaft_damping_ratio: of the halves of a gear against each other.
         bearing_damping_ratio: of a half on its bearings.
@@ -42,6 +43,7 @@ class PairValues:
     face_width: float
     backlash: float
     coast_phase: float
+    total_contact_ratio: float
     mesh_damping_ratio: float
     shaft_damping_ratio: float
     bearing_damping_ratio: float

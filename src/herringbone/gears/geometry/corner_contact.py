@@ -1,7 +1,8 @@
 r"""Contact of a tip corner off the line of action, and the impact at the beginning of a mesh.
 
 Loaded teeth are late by their deflection: the next tooth meets its mate before the path of contact
-begins, where the tip corner of one gear touches the flank of the other off the line of action.
+begins, where the tip corner of one gear touches the flank of the other off the line of action: that
+of the driven gear.
 The corner at radius r_a has turned back by s/r_b of its gear; its distance to the flank, along the
 base tangent, follows from the polar angle of the corner about the other gear's axis:
 
@@ -75,7 +76,7 @@ class Impact:
 
 
 def meshing_impact(
-    pair: "GearPair", speed: float, deflection: float, pair_stiffness: float
+    pair: "GearPair", speed: float, deflection: float, pair_stiffness: float, driven: int = 1
 ) -> Impact:
     """Impact of entering teeth.
 
@@ -83,8 +84,9 @@ def meshing_impact(
         pair: gear pair.
         speed: of the pinion [rad/s].
         deflection: of the mesh, normal to the flank [m].
-        pair_stiffness: of one tooth pair at the path's start, loaded over the full face of one
+        pair_stiffness: of one tooth pair where teeth enter, loaded over the full face of one
             half, normal to the flank [N/m].
+        driven: the gear whose tip enters: 0 pinion, 1 wheel.
 
     Raises:
         ParameterError: the deflection is so large that teeth would meet a base pitch early.
@@ -94,7 +96,7 @@ def meshing_impact(
     along = deflection / math.cos(pair.base_helix_angle)
 
     def early(distance: float) -> float:
-        return float(corner_separation(pair, 1, np.asarray(distance))) - along
+        return float(corner_separation(pair, driven, np.asarray(distance))) - along
 
     if early(pair.transverse_base_pitch) <= 0.0:
         raise ParameterError(

@@ -16,7 +16,9 @@ _PHASES = 32
 """Of a mesh period, over which the stiffness of plain teeth is averaged."""
 
 
-def impact_at(job: GearJob, stiffness: MeshStiffness, speed: float, load: float) -> Impact:
+def impact_at(
+    job: GearJob, stiffness: MeshStiffness, speed: float, load: float, driven: int = 1
+) -> Impact:
     """What the meshing impact may reach; an upper bound for helical teeth.
 
     Args:
@@ -24,6 +26,7 @@ def impact_at(job: GearJob, stiffness: MeshStiffness, speed: float, load: float)
         stiffness: of one half.
         speed: of the pinion [rad/s].
         load: normal force of the half, positive [N].
+        driven: the gear whose tip enters: 0 pinion, 1 wheel.
 
     Raises:
         ParameterError: the load is too large for the pair.
@@ -33,4 +36,5 @@ def impact_at(job: GearJob, stiffness: MeshStiffness, speed: float, load: float)
     if job.modification != Modification():
         plain = float(np.mean(mesh.solve([load], _PHASES).secant))
     deflection = load / plain
-    return meshing_impact(job.pair, speed, deflection, mesh.single_pair_stiffness(load))
+    pair_stiffness = mesh.single_pair_stiffness(load, driven)
+    return meshing_impact(job.pair, speed, deflection, pair_stiffness, driven)

@@ -111,10 +111,15 @@ class SliceMesh(ContactSlices):
             load, _ = self._line_loads(slices, load, deflection)
         return LineLoad(np.concatenate(path), np.concatenate(face), slices.length[0], load[0])
 
-    def single_pair_stiffness(self, force: float) -> float:
-        """Stiffness [N/m] of one tooth pair at the path's start, loaded over the full face."""
+    def single_pair_stiffness(self, force: float, driven: int = 1) -> float:
+        """Stiffness [N/m] of one tooth pair where teeth enter, loaded over the full face.
+
+        That is the path's start where the wheel (1) is driven, its end where the pinion (0) is.
+        """
+        enters = 0.0 if driven else self.pair.length_of_path_of_contact
         length = self.pair.face_width / math.cos(self.pair.base_helix_angle)
-        slices = self.at(np.zeros((1, 1)), np.full((1, 1), 0.5 * self.pair.face_width), length)
+        middle = np.full((1, 1), 0.5 * self.pair.face_width)
+        slices = self.at(np.full((1, 1), enters), middle, length)
         contact, _ = self.contact(slices, np.full((1, 1), force / length))
         return length / float(slices.compliance[0, 0] + contact[0, 0])
 

@@ -38,23 +38,28 @@ def with_impacts(system: System, jobs: Mapping[str, GearJob]) -> tuple[System, t
             notes.append(f"{column}: set by name, kept over the impact of the pair")
             continue
         speed, load = _operating_point(system, part)
-        if speed < _STANDS or load < _OPEN:
+        if abs(speed) < _STANDS or abs(load) < _OPEN:
             notes.append(f"{part}: no impact is set: the start has no speed, or no load")
             continue
-        force = job.mesh.impact_share * impact_at(job, stiffness_for(job), speed, load).force
+        driven = 1 if speed * load > 0.0 else 0
+        impact = impact_at(job, stiffness_for(job), abs(speed), abs(load), driven)
+        force = job.mesh.impact_share * impact.force
         system = system.with_values({column: force})
         notes.append(
             f"{column} = {force:.4g} N: {job.mesh.impact_share:g} of the largest at "
-            f"{speed:.5g} rad/s and {load:.5g} N per half"
+            f"{speed:.5g} rad/s and {load:.5g} N per half, as tips of the {GEARS[driven]} enter"
         )
     return system, tuple(notes)
 
 
 def _operating_point(system: System, gear: str) -> tuple[float, float]:
-    """Speed of the pinion [rad/s], and mean normal force of the halves [N], at the start."""
+    """Speed of the pinion [rad/s], and mean normal force of the halves [N], at the start.
+
+    The force is negative where the coast flank carries.
+    """
     known = anatomy(system)
     (flange,) = known.ports(gear, PortKind.FLANGE, GEARS[0])
     columns = [f"{gear}.{flange.name}.w", *known.columns(gear, Quantity.MESH_FORCE)]
     twin = Twin(system)
     speed, *forces = twin.observe(np.zeros(1), twin.state[:, None], columns)[0]
-    return abs(float(speed)), abs(float(np.mean(forces)))
+    return float(speed), float(np.mean(forces))

@@ -38,6 +38,21 @@ def test_force_at_the_operating_point(file):
     assert any(note.startswith(f"{name} = ") for note in run.info.notes)
 
 
+@pytest.mark.parametrize(
+    ("torque", "speed", "driven"),
+    [(200.0, 1000.0, 1), (-200.0, 1000.0, 0), (-200.0, -1000.0, 1), (200.0, -1000.0, 0)],
+)
+def test_tips_of_the_driven_gear_enter(file, torque, speed, driven):
+    run = hb.run("test_rig", gear=file, torque=torque, speed=speed, **RUN)
+    job = read_gear_file(file)
+    load = np.mean([run.data[f"gearbox.gear_mesh.mesh_{side}.force"][0] for side in SIDES])
+    speed = abs(run.data["gearbox.gear_mesh.pinion.w"][0])
+    expected = SHARE * impact_at(job, stiffness_for(job), speed, abs(load), driven).force
+    assert run.info.parameters["gearbox.gear_mesh.impact_force"] == pytest.approx(
+        expected, rel=1e-6
+    )
+
+
 def test_set_by_name_holds(file):
     run = hb.run("test_rig", gear=file, values={"gear_mesh.impact_force": 7.0}, **RUN)
     assert run.info.parameters["gearbox.gear_mesh.impact_force"] == 7.0
