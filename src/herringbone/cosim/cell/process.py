@@ -217,6 +217,7 @@ _NAMES = {
     "apply": "trials",
     "enter_initialization": "initialise",
     "exit_initialization": "initialise",
+    "end": "terminate or freeInstance",
     "put_values": "set",
     "get_values": "get",
 }

@@ -161,6 +161,11 @@ class Server:
         self._parts[number].free()
         del self._parts[number]
 
+    def _end(self, number: int) -> None:
+        """Terminate and free the instance."""
+        self._terminate(number)
+        self._free(number)
+
     def _apply(self, _: int, module: str, function: str, file: str, folder: str) -> object:
         """What a function finds about an FMU; it has a folder for temporary files."""
         self.folders.add(folder)
