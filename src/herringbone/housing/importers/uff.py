@@ -12,6 +12,7 @@ import numpy as np
 
 from herringbone.core import ResourceError
 from herringbone.core.reading.universal import universal_sets
+from herringbone.housing.importers import universal_coordinates
 from herringbone.housing.importers.mode_set import (
     ModeSet,
     check_modal_mass,
@@ -21,12 +22,10 @@ from herringbone.housing.importers.mode_set import (
 )
 from herringbone.housing.importers.seat_file import SeatFile
 
-_KINDS = {15, 55, 164, 2411, 2414}
+_KINDS = {15, 55, 164, 2411, 2414} | universal_coordinates.KINDS
 _NORMAL, _COMPLEX = 2, 3
 _DISPLACEMENT = (0, 1, 8)
 """Specific data types that can be displacements: unknown, general, displacement."""
-_GLOBAL = {0, 1}
-"""Labels by which programs mean the global coordinate system."""
 _DIGITS = 1e-4
 
 
@@ -87,7 +86,7 @@ def _nodes(sets: list[dict[str, Any]], seats: SeatFile) -> tuple[np.ndarray, np.
     labels = np.concatenate([np.asarray(item["node_nums"]).astype(int) for item in found])
     places = np.vstack([np.column_stack([item["x"], item["y"], item["z"]]) for item in found])
     _check_places(labels, places)
-    _check_global(labels, found, seats)
+    _check_global(labels, found, sets, seats)
     return labels, places
 
 
@@ -99,18 +98,25 @@ def _check_places(labels: np.ndarray, places: np.ndarray) -> None:
         raise ResourceError(f"node {labels[int(apart.argmax())]} stands twice, at two places")
 
 
-def _check_global(labels: np.ndarray, sets: list[dict[str, Any]], seats: SeatFile) -> None:
+def _check_global(
+    labels: np.ndarray,
+    nodes: list[dict[str, Any]],
+    sets: list[dict[str, Any]],
+    seats: SeatFile,
+) -> None:
     """Refuse seats and sensors in coordinates that are not the global ones."""
     used = np.isin(labels, [node for selection in seats.selections for node in selection.nodes])
     for key, what in (("def_cs", "definition"), ("disp_cs", "displacement")):
-        system = np.concatenate([np.asarray(item[key]).astype(int) for item in sets])
-        if local := sorted(set(system[used].tolist()) - _GLOBAL):
-            node = labels[used & (system == local[0])][0]
-            raise ResourceError(
-                f"node {node} is in the {what} coordinate system {local[0]}; export seats and "
-                "sensors in global coordinates and directions (0 or 1)"
-            )
-        if len(several := sorted(set(system[used].tolist()))) > 1:
+        system = np.concatenate([np.asarray(item[key]).astype(int) for item in nodes])
+        several = sorted(set(system[used].tolist()))
+        for label in several:
+            if why := universal_coordinates.why_local(sets, label):
+                node = labels[used & (system == label)][0]
+                raise ResourceError(
+                    f"node {node} is in the {what} coordinate system {label}, {why}; export seats "
+                    "and sensors in global coordinates and directions"
+                )
+        if len(several) > 1:
             raise ResourceError(
                 f"nodes of seats and sensors are in the {what} coordinate systems "
                 f"{several[0]} and {several[1]}; export all in one, the global one"

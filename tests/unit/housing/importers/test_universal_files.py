@@ -168,8 +168,8 @@ def test_nodes_in_two_sets(pyuff, tmp_path, seats, model):
 @pytest.mark.parametrize(
     ("systems", "expected"),
     [
-        ({"disp_cs": 7}, "node 1 is in the displacement coordinate system 7; export seats and"),
-        ({"def_cs": 3}, "node 1 is in the definition coordinate system 3; export seats and"),
+        ({"disp_cs": 7}, "node 1 is in the displacement coordinate system 7, which is none of"),
+        ({"def_cs": 3}, "node 1 is in the definition coordinate system 3, which is none of"),
         ({"disp_cs": np.arange(12) // 6}, "in the displacement coordinate systems 0 and 1; export"),
         ({"def_cs": np.arange(12) // 6}, "in the definition coordinate systems 0 and 1; export"),
     ],
@@ -196,3 +196,48 @@ def test_modes_that_stand_in_two_kinds_of_data_sets(pyuff, write_uff, seats, mod
     with path.open("a") as file:
         file.write("\n".join(text_2414(frequency, -shapes)) + "\n")
     assert "modes.unv: modes 1 and 37 are the same" in refusal(lambda: load(path, seats))
+
+
+TURN = np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+
+
+def system_2420(pyuff, label, matrix, kind=0):
+    return pyuff.prepare_2420(
+        Part_UID=1, Part_Name="NONE", CS_sys_labels=[label], CS_types=[kind], CS_colors=[8],
+        CS_names=["CS"], CS_matrices=[matrix], return_full_dict=True,
+    )  # fmt: skip
+
+
+def system_18(pyuff, label, axes, origin):
+    whole = {name: np.array([value]) for name, value in (
+        ("cs_num", label), ("cs_type", 0), ("ref_cs_num", 0), ("color", 1), ("method", 1),
+        ("ref_o", origin), ("x_point", origin + 2 * axes[0]),
+        ("xz_point", origin + axes[0] + axes[2]),
+    )}  # fmt: skip
+    return pyuff.prepare_18(**whole, cs_name=["CS"], return_full_dict=True)
+
+
+def test_systems_that_are_the_global_one_or_not_used(pyuff, write_uff, model, seats):
+    plain = np.vstack([np.eye(3), np.zeros(3)])
+    path = write_uff(
+        system_2420(pyuff, 1, plain),
+        system_2420(pyuff, 4, np.vstack([TURN, np.zeros(3)])),
+        system_18(pyuff, 1, np.eye(3), np.zeros(3)),
+        *shape_sets(pyuff, *modes_of(model)),
+    )
+    assert load(path, seats).frequency_hz.size == 3 * NODES
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.3])
+@pytest.mark.parametrize("kind", ["2420", "2420, cylindrical", "18"])
+def test_a_global_label_of_a_local_system(kind, shift, pyuff, write_uff, model, seats):
+    origin = np.full(3, shift)
+    axes = TURN if shift == 0.0 and kind != "2420, cylindrical" else np.eye(3)
+    system = (
+        system_18(pyuff, 1, axes, origin)
+        if kind == "18"
+        else system_2420(pyuff, 1, np.vstack([axes, origin]), int("cyl" in kind))
+    )
+    path = write_uff(system, *shape_sets(pyuff, *modes_of(model)))
+    said = refusal(lambda: load(path, seats))
+    assert "node 1 is in the definition coordinate system 1, which data set " + kind[:2] in said
