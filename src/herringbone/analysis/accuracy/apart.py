@@ -46,6 +46,7 @@ def differences(
     theirs: np.ndarray,
     names: Sequence[str],
     groups: Mapping[str, Sequence[str]],
+    least: float = 0.0,
 ) -> Apart:
     """Compare signals at the same times.
 
@@ -53,6 +54,7 @@ def differences(
         ours, theirs: (times, names); the second are the better ones.
         names: of the columns.
         groups: names by group.
+        least: alternating part of a group, in its unit, that is none.
     """
     place = {name: number for number, name in enumerate(names)}
     spread = np.std(theirs, axis=0)
@@ -60,7 +62,9 @@ def differences(
     found = {}
     for name, columns in groups.items():
         own = [place[column] for column in columns]
-        if varies[own].any():
+        if varies[own].any() and spread[own].max() > max(
+            least, _CONSTANT * np.abs(theirs[:, own]).max()
+        ):
             found[name] = relative_error(ours[:, own], theirs[:, own])
     off = np.sqrt(np.mean((ours - theirs) ** 2, axis=0))
     single = np.where(varies, off / np.where(varies, spread, 1.0), 0.0)

@@ -11,7 +11,7 @@ from herringbone.core.caching.remembered import Remembered
 from herringbone.core.places.files import same_folder
 from herringbone.core.process.activity import activity
 from herringbone.core.process.one_thread import one_blas_thread
-from herringbone.core.wording import percent
+from herringbone.core.wording import option, percent
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.rows.stream import Streaming
@@ -178,7 +178,13 @@ def _lines(core: Core, asked: FusedAsked, trial: Measured) -> list[str]:
     tolerance, errors = asked.tolerance or DEFAULT_TOLERANCE, percent(trial.error)
     steps = f"steps of {1e6 * trial.steps.length:.4g} us, degree {trial.steps.degree}"
     over = f"the first {1e3 * trial.window:.3g} ms"
-    if asked.step is None:
+    if not trial.groups:
+        known = option("verify", True)
+        lines = [
+            f"fused: {steps}; no channel varies over {over}, so that its error is not known; "
+            f"{known} measures it over the whole run"
+        ]
+    elif asked.step is None:
         lines = [f"fused: {steps}, for an error of {100.0 * tolerance:g} %: {errors} over {over}"]
     else:
         lines = [f"fused: {steps}, as asked for: error {errors} over {over}"]

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+import herringbone as hb
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.course import Course, base_step
@@ -125,3 +126,12 @@ def test_events_are_counted():
 )
 def test_base_steps_and_records_go_together(length, gap, longest, step):
     assert base_step(length, gap, longest) == pytest.approx(step, rel=1e-12)
+
+
+def test_at_rest_nothing_varies():
+    """What the solution of the laws leaves of a rig at rest is no motion to be resolved."""
+    run = hb.run("test_rig", speed=0.0, t_end=0.01, fuse=True)
+    assert run.outcome.completed
+    assert run.verification is None
+    line = "fused: steps of 100 us, degree 4; no channel varies over the first 10 ms, so that its"
+    assert any(note.startswith(line) for note in run.info.notes)

@@ -10,6 +10,7 @@ from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.course import Course
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.process.one_thread import one_blas_thread
+from herringbone.cosim.loops.adaptive_step.step_error import LEAST
 
 WINDOW = 0.02
 """Time over which steps are tried [s]."""
@@ -99,7 +100,7 @@ def measured(core: Core, steps: Steps, t_end: float) -> Measured:
     times = np.linspace(0.0, window, max(_FEWEST, round(window / steps.length)) + 1)
     half = steps._replace(length=0.5 * steps.length)
     ours, theirs = (values_at(core, times, own, columns) for own in (steps, half))
-    found = differences(ours, theirs, columns, groups)
+    found = differences(ours, theirs, columns, groups, LEAST)
     return Measured(steps, found.groups, found.worst, found.worst_difference, window)
 
 
