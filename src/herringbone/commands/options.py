@@ -12,6 +12,8 @@ from herringbone.core.declaring.units import R_MIN
 _SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
 _WHOLE = 2.0**53
 """Up to here doubles hold all whole numbers."""
+_USUAL_SPREAD = 1.0
+"""By what share assumed parameters may err: known within a factor of 2."""
 
 ANY_KIND = "auto"
 """Of FMUs, if none is asked for."""
@@ -144,8 +146,9 @@ def add_sensitivities(sub: argparse.ArgumentParser) -> None:
         "is named",
     )  # fmt: skip
     sub.add_argument(
-        "--known-within", type=float, default=2.0, metavar="FACTOR",
-        help="factor within which such parameters are known, for bands and tornado plots; 2",
+        "--known-within", type=float, metavar="FACTOR",
+        help="factor within which such parameters are known, for bands and tornado plots; 2 if not "
+        "given",
     )  # fmt: skip
 
 
@@ -160,6 +163,12 @@ def add_solver(sub: argparse.ArgumentParser) -> None:
 def spread_of(options: argparse.Namespace) -> float:
     """By what share parameters may err; raises ParameterError."""
     factor = options.known_within
+    if factor is None:
+        return _USUAL_SPREAD
+    if options.sensitivities is None:
+        raise ParameterError(
+            f"--known-within {factor:g}: of the parameters of --sensitivities; add that"
+        )
     if not 1.0 <= factor < math.inf:
         raise ParameterError(f"--known-within {factor:g}: it is a factor, at least 1")
     return factor - 1.0

@@ -37,6 +37,8 @@ def test_a_table_in_the_units_that_were_asked_for(tmp_path, capsys):
     [
         (["sweep", "e_axle", "--speed", "1000"], "no part of e_axle declares a speed set point"),
         (["sweep", "gearbox"], "at least one parameter"),
+        ([*GEARBOX, "--known-within", "1.1"], "--known-within 1.1: of the parameters of --sens"),
+        ([*GEARBOX, "--sensitivities", "--known-within", "0.9"], "it is a factor, at least 1"),
         (["sweep", "gearbox", "--speed", "1:2"], "START:STOP:COUNT"),
         (["sweep", "gearbox", "--set", "gear_mesh.nothing=1,2"], "no variable 'nothing'"),
         ([*GEARBOX, "--column", "*.pinion.phy"], "did you mean gear_mesh.pinion.phi"),
