@@ -15,6 +15,45 @@ STAGE = Path(__file__).parents[2] / "gear_stage.rexs"
 """First stage of the FVA two-stage industrial gear unit, as its public REXS model has it."""
 
 
+def stage_with(tmp_path, components="", relations="", **replaced):
+    """The stage with components and relations added, and texts of attributes replaced by name."""
+    text = STAGE.read_text(encoding="utf-8")
+    for place, more in (("components", components), ("relations", relations)):
+        text = text.replace(f"</{place}>", f"{more}</{place}>")
+    for name, value in replaced.items():
+        text = re.sub(rf'(id="{name}" unit="[^"]*">)[^<]*', rf"\g<1>{value}", text)
+    file = tmp_path / "stage.rexs"
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+def component(number, kind, **attributes):
+    lines = "".join(
+        f'<attribute id="{name}" unit="{unit}">{value}</attribute>'
+        for name, (value, unit) in attributes.items()
+    )
+    return f'<component id="{number}" name="Part {number}" type="{kind}">{lines}</component>'
+
+
+def relation(kind, order="", **roles):
+    refs = "".join(f'<ref role="{role}" id="{number}"/>' for role, number in roles.items())
+    return f'<relation type="{kind}" order="{order}">{refs}</relation>'
+
+
+def hob(number, addendum, radius=0.25, **more):
+    return component(number, "rack_shaped_tool", tip_radius_factor=(radius, "none"),
+                     addendum_coefficient_reference_profile=(addendum, "none"), **more)  # fmt: skip
+
+
+def steps(tool, order=1, flanks=(13, 14, 15, 16), settings=99):
+    return "".join(
+        relation(
+            "manufacturing_step", order, workpiece=f, tool=tool, manufacturing_settings=settings
+        )
+        for f in flanks
+    )
+
+
 def test_rexs_stage():
     """Its centre distance is that of its profile shifts without backlash, to the digits given."""
     pair = read_rexs_job(STAGE).pair
@@ -103,4 +142,61 @@ def test_other_xml(tmp_path):
     file = tmp_path / "page.xml"
     file.write_text("<html/>", encoding="utf-8")
     with pytest.raises(HerringboneError, match="root element 'html' is not the 'model'"):
+        read_rexs_job(file)
+
+
+# -- tools ----------------------------------------------------------------------------------------
+
+
+def test_tool_of_the_flanks_gives_the_root(tmp_path):
+    """d_f = z m_n / cos(beta) - 2 m_n (h_fP - x), with h_fP = h_aP0 of the hob; not all of it."""
+    settings = component(41, "cylindrical_gear_manufacturing_settings",
+                         generated_addendum_modification_coefficient=(0.19, "none"))  # fmt: skip
+    cutting = hob(40, 1.4, tip_diameter=(90, "mm"), protuberance_amount=(0, "mm"))
+    job = read_job(stage_with(tmp_path, cutting + settings, steps(40, settings=41)))
+    module = 4.5e-3
+    for gear, teeth in enumerate((27, 51)):
+        expected = teeth * module / math.cos(math.radians(21.0)) - 2.0 * module * (1.4 - 0.231415)
+        assert 2.0 * job.pair.root_radius[gear] == pytest.approx(expected, rel=1e-12)
+    assert job.pair.root_fillet_radius_coefficient == (0.25, 0.25)
+    assert job.pair.tip_radius == read_rexs_job(STAGE).pair.tip_radius
+    pinion = next(line for line in job.unread if "'Pinion' is cut by" in line)
+    assert pinion.endswith(
+        "rack_shaped_tool 'Part 40'; not read: generated_addendum_modification_coefficient = 0.19"
+    )
+
+
+def test_tools_up_to_rexs_1_2_are_those_of_the_gear(tmp_path):
+    before = relation("ordered_reference", 1, origin=12, referenced=40)
+    pair = read_rexs_job(stage_with(tmp_path, hob(40, 1.4), before)).pair
+    assert pair.dedendum_coefficient == (1.25, 1.4)
+    assert pair.root_fillet_radius_coefficient[1] == 0.25
+
+
+def test_the_last_of_several_tools_is_taken(tmp_path):
+    """By the order of the steps, which is not that of the file."""
+    job = read_job(
+        stage_with(tmp_path, hob(40, 1.4) + hob(41, 1.3, 0.3), steps(41, 2) + steps(40, 1))
+    )
+    assert job.pair.dedendum_coefficient == (1.3, 1.3)
+    said = "'Part 40', rack_shaped_tool 'Part 41': the root is that of rack_shaped_tool 'Part 41'"
+    assert sum(said in line for line in job.unread) == 2
+
+
+def test_tools_that_are_not_read_are_named(tmp_path):
+    other = hob(40, 1.4, normal_module=(4.0, "mm"))
+    job = read_job(stage_with(tmp_path, other, steps(40)))
+    assert job.pair == read_job(STAGE).pair
+    assert sum("'Part 40': not read for want of addendum" in line for line in job.unread) == 2
+    cutter = hob(40, 1.3, number_of_teeth=(23, "none")).replace("rack_shaped", "cutter_wheel")
+    job = read_job(stage_with(tmp_path, cutter, steps(40)))
+    assert job.pair.number_of_teeth == (27, 51)
+    assert sum("the root is that of a rack with the cutter's" in line for line in job.unread) == 2
+
+
+def test_tools_of_both_flanks_must_be_the_same(tmp_path):
+    file = stage_with(
+        tmp_path, hob(40, 1.4) + hob(41, 1.3), steps(40, flanks=[13]) + steps(41, flanks=[14])
+    )
+    with pytest.raises(HerringboneError, match="'Pinion': the tools of its flanks differ in adden"):
         read_rexs_job(file)

@@ -7,10 +7,10 @@ attributes that have a unit, and relations between components. A pair is taken f
     cylindrical_gear (gear_1, 2)    number_of_teeth, normal_module, face_width,
                                     helix_angle_reference_diameter; optional tip_diameter,
                                     inner_diameter
-    cylindrical_gear_flank, stage gear data, tool: whatever is related to a gear
-                                    normal_pressure_angle, addendum_modification_coefficient;
-                                    optional addendum_coefficient_reference_profile (of the tool:
-                                    the gear's dedendum)
+    cylindrical_gear_flank, stage gear data: whatever is related to a gear
+                                    normal_pressure_angle, addendum_modification_coefficient
+    tools, see `rexs_tool`          optional addendum_coefficient_reference_profile (the gear's
+                                    dedendum), tip_radius_factor (its root fillet)
     material                        optional elastic_modulus, poisson_ratio, density
 
 Both gears must have the same module, pressure angle and, but for the hand, helix angle.
@@ -34,6 +34,7 @@ from herringbone.gears.files.rexs_model import (
     read_model,
     value_of,
 )
+from herringbone.gears.files.rexs_tool import Root, root_by_tool
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
 
@@ -58,18 +59,30 @@ def read_rexs_job(file: str | Path, *, stage: str | None = None, halves: int = 1
         ParameterError: the gears cannot mesh.
     """
     model = read_model(Path(file))
-    values = _values(model, _stage(model, stage))
+    chosen = _stage(model, stage)
+    gears = _gears(model, chosen)
+    roots = [root_by_tool(model, gear) for gear in gears]
+    values = {**_values(model, chosen, gears), **_roots(roots)}
     try:
         pair = GearPair(**values, halves=halves)
         check_proportions(pair, {})
     except ParameterError as error:
         raise ParameterError(f"{file}: {error}") from None
-    return GearJob(pair, unread=_unread(model))
+    lines = (*(line for root in roots for line in root.lines), *_unread(model))
+    return GearJob(pair, unread=lines)
 
 
-def _values(model: Model, stage: str) -> dict[str, Any]:
-    """What a pair is made of, but its halves."""
-    gears = _gears(model, stage)
+def _roots(roots: list[Root]) -> dict[str, Any]:
+    return {
+        "dedendum_coefficient": [
+            1.25 if root.dedendum is None else root.dedendum for root in roots
+        ],
+        "root_fillet_radius_coefficient": [root.fillet for root in roots],
+    }
+
+
+def _values(model: Model, stage: str, gears: list[str]) -> dict[str, Any]:
+    """What a pair is made of, but its halves and roots."""
     helix = [value_of(model, g, "helix_angle_reference_diameter", "angle") for g in gears]
     if abs(helix[0] + helix[1]) > SAME:
         raise ResourceError(
@@ -78,7 +91,6 @@ def _values(model: Model, stage: str) -> dict[str, Any]:
         )
     tips = [optional(model, gear, "tip_diameter", "length") for gear in gears]
     bores = [optional(model, gear, "inner_diameter", "length") for gear in gears]
-    tool = [optional(model, g, "addendum_coefficient_reference_profile", "number") for g in gears]
     return {
         "number_of_teeth": [_teeth(model, gear) for gear in gears],
         "normal_module": _shared(model, gears, "normal_module", "length"),
@@ -91,7 +103,6 @@ def _values(model: Model, stage: str) -> dict[str, Any]:
         ],
         "tip_radius": [None if tip is None else 0.5 * tip for tip in tips],
         "bore_diameter": [bore or 0.0 for bore in bores],
-        "dedendum_coefficient": [1.25 if height is None else height for height in tool],
         **_material(model, gears),
     }
 

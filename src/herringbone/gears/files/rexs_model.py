@@ -3,8 +3,10 @@
 Errors say file, component and attribute.
 """
 
+import re
 from pathlib import Path
 from typing import NamedTuple
+from xml.etree.ElementTree import Element
 
 from herringbone.core import ResourceError
 from herringbone.core.reading.numbers import number
@@ -26,7 +28,10 @@ class Component(NamedTuple):
 
 
 class Model(NamedTuple):
-    """A file: components by id, and relations as lists of (role, id of a component)."""
+    """A file: components by id, and relations as lists of (role, id of a component).
+
+    Relations that are steps of a sequence come in its order.
+    """
 
     file: Path
     components: dict[str, Component]
@@ -55,18 +60,49 @@ def read_model(file: Path) -> Model:
     }
     relations = [
         [(ref.get("role", ""), ref.get("id", "")) for ref in relation.findall("ref")]
-        for relation in root.findall("relations/relation")
+        for relation in sorted(root.findall("relations/relation"), key=_order)
     ]
     return Model(file, components, relations)
 
 
+def _order(relation: Element) -> float:
+    try:
+        return number(relation.get("order", "0"))
+    except ValueError:
+        return 0.0
+
+
+def named(model: Model, component: str) -> str:
+    """How messages call a component: cylindrical_gear 'Pinion'."""
+    found = model.components[component]
+    return f"{found.type} '{found.name}'"
+
+
 def related(model: Model, gear: str) -> list[str]:
-    """The gear, and the components that a relation ties to it as its flanks, data or tool."""
+    """The gear, and the components that a relation ties to it as its flanks or data."""
     tied = [gear]
     for relation in model.relations:
         if ("gear", gear) in relation:
-            tied += [i for role, i in relation if role not in {"gear", "stage"}]
+            tied += [i for role, i in relation if role not in {"gear", "stage", "tool"}]
     return [i for i in tied if i in model.components]
+
+
+def present(model: Model, component: str, pattern: re.Pattern[str]) -> list[str]:
+    """Attributes whose names match and that say something, such as 'tip_relief = 5 mum'."""
+    found = model.components.get(component)
+    given = found.attributes.items() if found else ()
+    return [
+        f"{name} = {text} {unit}".removesuffix(" none").strip()
+        for name, (text, unit) in given
+        if pattern.fullmatch(name) and text and not _is_zero(text)
+    ]
+
+
+def _is_zero(text: str) -> bool:
+    try:
+        return number(text) == 0.0
+    except ValueError:
+        return False
 
 
 def attribute(model: Model, component: str, name: str, kind: str) -> float:
@@ -75,11 +111,11 @@ def attribute(model: Model, component: str, name: str, kind: str) -> float:
     Raises:
         ResourceError: it is missing, no number, or in a unit of another kind.
     """
-    found = model.components[component]
-    where = f"{model.file}: {found.type} '{found.name}', {name}"
-    if name not in found.attributes:
+    where = f"{model.file}: {named(model, component)}, {name}"
+    attributes = model.components[component].attributes
+    if name not in attributes:
         raise ResourceError(f"{where} is missing")
-    text, unit = found.attributes[name]
+    text, unit = attributes[name]
     try:
         value = number(text)
     except ValueError as error:
@@ -97,8 +133,8 @@ def optional(model: Model, gear: str, name: str, kind: str) -> float | None:
     values = [attribute(model, i, name, kind) for i in owners]
     if values and max(values) - min(values) > SAME:
         raise ResourceError(
-            f"{model.file}: {GEAR} '{model.components[gear].name}' has several values of {name}; "
-            "only equal flanks are read"
+            f"{model.file}: {named(model, gear)} has several values of {name}; only equal flanks "
+            "are read"
         )
     return values[0] if values else None
 
