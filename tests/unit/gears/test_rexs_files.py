@@ -98,7 +98,7 @@ def test_bad_rexs(tmp_path, old, new, expected):
 
 
 def test_modifications_in_rexs_are_named(tmp_path):
-    """REXS 1.4 has them as components of their own."""
+    """They are components of their own."""
     more = "".join(
         f'<component id="{30 + i}" type="{kind}"/>'
         for i, kind in enumerate(("tip_relief", "helix_crowning", "tip_relief", "worm_gear_flank"))
@@ -111,6 +111,30 @@ def test_modifications_in_rexs_are_named(tmp_path):
     assert "2 tip_relief)" in line
     assert pair_values(read_mounted_job(file))[1][0] == line
     assert read_job(STAGE).unread == ()
+
+
+def test_each_kind_of_flank_modification_is_named(tmp_path):
+    """The fourteen types of REXS 1.2 to 2.0; a crowned roller of a bearing is none."""
+    kinds = [
+        *("tip_relief", "root_relief", "triangular_tip_relief", "triangular_root_relief"),
+        *("end_relief_datum_face", "end_relief_non_datum_face", "topographical_modification"),
+        *("helix_crowning", "helix_slope", "helix_deviation"),
+        *("profile_crowning", "profile_slope", "profile_twist", "profile_deviation"),
+    ]
+    more = "".join(component(30 + i, kind) for i, kind in enumerate([*kinds, "roller_crowning"]))
+    (line,) = read_job(stage_with(tmp_path, more)).unread
+    assert f"({', '.join(f'1 {kind}' for kind in sorted(kinds))})" in line
+
+
+def test_topographical_deviations_of_flanks_are_named(tmp_path):
+    text = STAGE.read_text(encoding="utf-8")
+    matrix = '<attribute id="topographical_deviation_amounts" unit="mm"><matrix/></attribute>'
+    flank = '<component id="14" name="Pinion, right flank" type="cylindrical_gear_flank">'
+    assert flank in text
+    file = tmp_path / "measured.rexs"
+    file.write_text(text.replace(flank, flank + matrix), encoding="utf-8")
+    (line,) = read_job(file).unread
+    assert "(1 flanks with topographical_deviation), the flanks are plain" in line
 
 
 def test_flanks_that_differ(tmp_path):

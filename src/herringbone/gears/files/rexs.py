@@ -14,12 +14,10 @@ attributes that have a unit, and relations between components. A pair is taken f
     material                        optional elastic_modulus, poisson_ratio, density
 
 Both gears must have the same module, pressure angle and, but for the hand, helix angle.
-Modifications of flanks (tip_relief, helix_crowning, topographical_modification ...) are named, not
-read.
+What is not read, such as modifications of flanks, is named (`rexs_unread`).
 """
 
 import math
-from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -35,15 +33,13 @@ from herringbone.gears.files.rexs_model import (
     value_of,
 )
 from herringbone.gears.files.rexs_tool import Root, root_by_tool
+from herringbone.gears.files.rexs_unread import unread_flanks
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
 
 _STAGE = "cylindrical_stage"
 STAGE_MARK = "#"
 """Between the file and the id or name of a stage, where one text names both."""
-_MODIFICATIONS = ("relief", "relief_datum_face", "relief_non_datum_face", "crowning",
-                  "topographical_modification")  # fmt: skip
-"""How types of components end that modify flanks (REXS 1.4 and later)."""
 
 
 def read_rexs_job(file: str | Path, *, stage: str | None = None, halves: int = 1) -> GearJob:
@@ -68,7 +64,7 @@ def read_rexs_job(file: str | Path, *, stage: str | None = None, halves: int = 1
         check_proportions(pair, {})
     except ParameterError as error:
         raise ParameterError(f"{file}: {error}") from None
-    lines = (*(line for root in roots for line in root.lines), *_unread(model))
+    lines = (*(line for root in roots for line in root.lines), *unread_flanks(model, gears))
     return GearJob(pair, unread=lines)
 
 
@@ -105,18 +101,6 @@ def _values(model: Model, stage: str, gears: list[str]) -> dict[str, Any]:
         "bore_diameter": [bore or 0.0 for bore in bores],
         **_material(model, gears),
     }
-
-
-def _unread(model: Model) -> tuple[str, ...]:
-    """A line on the modifications of flanks in the file, if there are any."""
-    types = Counter(c.type for c in model.components.values() if c.type.endswith(_MODIFICATIONS))
-    if not types:
-        return ()
-    named = ", ".join(f"{count} {kind}" for kind, count in sorted(types.items()))
-    return (
-        f"{model.file}: modifications of flanks are not read ({named}), the flanks are plain; give "
-        "them as [modification] in a gear file",
-    )
 
 
 def _stage(model: Model, wanted: str | None) -> str:
