@@ -42,7 +42,7 @@ class GearJob:
         corner_contact: follow tip corners outside the path of contact.
         mesh: what geometry does not tell, see `MeshAssumptions`; no table depends on it.
         deviations: of the teeth, for runs; None: perfect teeth. No table depends on them.
-        unread: lines on what its file has and this does not.
+        unread: lines on what its file has and this does not, or the other way round.
     """
 
     pair: GearPair

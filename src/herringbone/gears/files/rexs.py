@@ -11,7 +11,7 @@ attributes that have a unit, and relations between components. A pair is taken f
                                     normal_pressure_angle, addendum_modification_coefficient
     tools, see `rexs_tool`          optional addendum_coefficient_reference_profile (the gear's
                                     dedendum), tip_radius_factor (its root fillet)
-    material                        optional elastic_modulus, poisson_ratio, density
+    material, see `rexs_material`   optional elastic_modulus, poisson_ratio, density
 
 Both gears must have the same module, pressure angle and, but for the hand, helix angle.
 What is not read, such as modifications of flanks, is named (`rexs_unread`).
@@ -23,6 +23,7 @@ from typing import Any
 
 from herringbone.core import ParameterError, ResourceError
 from herringbone.gears.files.proportions import check_proportions
+from herringbone.gears.files.rexs_material import material_of
 from herringbone.gears.files.rexs_model import (
     GEAR,
     SAME,
@@ -58,14 +59,15 @@ def read_rexs_job(file: str | Path, *, stage: str | None = None, halves: int = 1
     chosen = _stage(model, stage)
     gears = _gears(model, chosen)
     roots = [root_by_tool(model, gear) for gear in gears]
-    values = {**_values(model, chosen, gears), **_roots(roots)}
+    material, said = material_of(model, gears)
+    values = {**_values(model, chosen, gears), **_roots(roots), **material}
     try:
         pair = GearPair(**values, halves=halves)
         check_proportions(pair, {})
     except ParameterError as error:
         raise ParameterError(f"{file}: {error}") from None
-    lines = (*(line for root in roots for line in root.lines), *unread_flanks(model, gears))
-    return GearJob(pair, unread=lines)
+    lines = [*said, *(line for root in roots for line in root.lines), *unread_flanks(model, gears)]
+    return GearJob(pair, unread=tuple(lines))
 
 
 def _roots(roots: list[Root]) -> dict[str, Any]:
@@ -78,7 +80,7 @@ def _roots(roots: list[Root]) -> dict[str, Any]:
 
 
 def _values(model: Model, stage: str, gears: list[str]) -> dict[str, Any]:
-    """What a pair is made of, but its halves and roots."""
+    """What a pair is made of, but its halves, roots and material."""
     helix = [value_of(model, g, "helix_angle_reference_diameter", "angle") for g in gears]
     if abs(helix[0] + helix[1]) > SAME:
         raise ResourceError(
@@ -99,7 +101,6 @@ def _values(model: Model, stage: str, gears: list[str]) -> dict[str, Any]:
         ],
         "tip_radius": [None if tip is None else 0.5 * tip for tip in tips],
         "bore_diameter": [bore or 0.0 for bore in bores],
-        **_material(model, gears),
     }
 
 
@@ -144,24 +145,3 @@ def _shared(model: Model, gears: list[str], name: str, kind: str) -> float:
     if abs(first - second) > SAME:
         raise ResourceError(f"{model.file}: {name} of both gears must be the same")
     return first
-
-
-def _material(model: Model, gears: list[str]) -> dict[str, float]:
-    """Material that the first gear, or the shaft that carries it, refers to."""
-    shafts = {
-        i for r in model.relations if ("part", gears[0]) in r for role, i in r if role == "assembly"
-    }
-    for relation in model.relations:
-        roles = dict(relation)
-        material = roles.get("referenced", "")
-        if roles.get("origin") not in {gears[0], *shafts} or material not in model.components:
-            continue
-        if model.components[material].type == "material":
-            named = (
-                ("youngs_modulus", "elastic_modulus", "stress"),
-                ("poissons_ratio", "poisson_ratio", "number"),
-                ("density", "density", "density"),
-            )
-            has = model.components[material].attributes
-            return {to: attribute(model, material, n, kind) for to, n, kind in named if n in has}
-    return {}
