@@ -268,3 +268,64 @@ def test_steel_that_is_assumed_is_said(tmp_path):
     file.write_text(text.replace('id="density"', 'id="mass_density"'), encoding="utf-8")
     lines = read_job(file).unread
     assert any("'Steel' has no density; that of steel is taken, 7850 kg/m3" in x for x in lines)
+
+
+# -- geometry that a file may state ---------------------------------------------------------------
+
+
+def with_attributes(file, part, **attributes):
+    """Attributes (value, unit) put into the component of this number."""
+    lines = "".join(
+        f'<attribute id="{name}" unit="{unit}">{value}</attribute>'
+        for name, (value, unit) in attributes.items()
+    )
+    text = file.read_text(encoding="utf-8")
+    pattern = rf'(<component id="{part}"[^/>]*>)'
+    file.write_text(re.sub(pattern, rf"\g<1>{lines}", text, count=1), encoding="utf-8")
+    return file
+
+
+def test_addendum_of_the_flanks(tmp_path):
+    """r_a = r + m_n (h_aP + x), unless there is a tip diameter."""
+    plain = read_job(STAGE).pair
+    file = stage_with(tmp_path)
+    for flank in (13, 14, 15, 16):
+        with_attributes(file, flank, addendum_coefficient_basic_profile=(0.9, "none"))
+    pair = read_job(file).pair
+    assert pair.tip_radius[0] == pytest.approx(plain.tip_radius[0] - 0.45e-3, abs=1e-12)
+    pair = read_job(with_attributes(file, 11, tip_diameter=(141.0, "mm"))).pair
+    assert pair.tip_radius[0] == pytest.approx(70.5e-3, abs=1e-12)
+    assert pair.tip_radius[1] == pytest.approx(plain.tip_radius[1] - 0.45e-3, abs=1e-12)
+
+
+def test_root_diameter_holds_where_there_is_no_tool(tmp_path):
+    file = with_attributes(stage_with(tmp_path), 11, root_diameter=(119.8, "mm"))
+    job = read_job(file)
+    assert job.pair.root_radius[0] == pytest.approx(59.9e-3, abs=1e-12)
+    assert not any("root_diameter 1" in line for line in job.unread)
+    cut = stage_with(tmp_path, hob(40, 1.4), steps(40))
+    job = read_job(with_attributes(cut, 11, root_diameter=(119.8, "mm")))
+    said = "'Pinion': root_diameter 119.8000 mm is not read; by the tool it is 119.6269 mm"
+    assert any(said in line for line in job.unread)
+
+
+def test_common_face_width_and_backlash_of_the_stage(tmp_path):
+    """The mean of the least and the largest backlash, and no line that one is assumed."""
+    file = with_attributes(stage_with(tmp_path), 10, common_face_width=(30, "mm"),
+                           minimum_normal_backlash=(0.2, "mm"),
+                           maximum_normal_backlash=(0.3, "mm"))  # fmt: skip
+    values, notes = pair_values(read_mounted_job(file))
+    assert values.face_width == 0.03
+    assert values.backlash == pytest.approx(250e-6, rel=1e-12)
+    assert not any("assumed" in note for note in notes)
+    assert any("assumed" in note for note in pair_values(read_mounted_job(STAGE))[1])
+
+
+def test_thickness_and_chamfers_that_are_not_read_are_named(tmp_path):
+    file = with_attributes(stage_with(tmp_path), 11, normal_tooth_thickness=(7, "mm"),
+                           chordal_tooth_thickness_upper_deviation=(-0.1, "mm"))  # fmt: skip
+    for flank, chamfer in ((13, 0.4), (14, 0.4), (15, 0.0), (16, 0.0)):
+        with_attributes(file, flank, tooth_tip_chamfer=(chamfer, "mm"))
+    (line,) = (line for line in read_job(file).unread if "not read" in line)
+    assert "cylindrical_gear 'Pinion': not read: chordal_tooth_thickness_upper_deviation" in line
+    assert "_deviation = -0.1 mm, tooth_tip_chamfer = 0.4 mm; in a gear file" in line

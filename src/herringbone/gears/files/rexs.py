@@ -3,12 +3,14 @@
 The Reusable Engineering EXchange Standard (rexs.info) describes gear units in XML: components with
 attributes that have a unit, and relations between components. A pair is taken from
 
-    cylindrical_stage               center_distance
+    cylindrical_stage               center_distance; optional common_face_width,
+                                    minimum_normal_backlash, maximum_normal_backlash (their mean)
     cylindrical_gear (gear_1, 2)    number_of_teeth, normal_module, face_width,
                                     helix_angle_reference_diameter; optional tip_diameter,
-                                    inner_diameter
+                                    root_diameter (where there is no tool), inner_diameter
     cylindrical_gear_flank, stage gear data: whatever is related to a gear
-                                    normal_pressure_angle, addendum_modification_coefficient
+                                    normal_pressure_angle, addendum_modification_coefficient;
+                                    optional addendum_coefficient_basic_profile
     tools, see `rexs_tool`          optional addendum_coefficient_reference_profile (the gear's
                                     dedendum), tip_radius_factor (its root fillet)
     material, see `rexs_material`   optional elastic_modulus, poisson_ratio, density
@@ -33,10 +35,11 @@ from herringbone.gears.files.rexs_model import (
     read_model,
     value_of,
 )
-from herringbone.gears.files.rexs_tool import Root, root_by_tool
-from herringbone.gears.files.rexs_unread import unread_flanks
+from herringbone.gears.files.rexs_tool import Root, root_of
+from herringbone.gears.files.rexs_unread import unread_flanks, unread_values
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
+from herringbone.gears.mesh_assumptions import MeshAssumptions
 
 _STAGE = "cylindrical_stage"
 STAGE_MARK = "#"
@@ -58,16 +61,26 @@ def read_rexs_job(file: str | Path, *, stage: str | None = None, halves: int = 1
     model = read_model(Path(file))
     chosen = _stage(model, stage)
     gears = _gears(model, chosen)
-    roots = [root_by_tool(model, gear) for gear in gears]
+    roots = [root_of(model, gear) for gear in gears]
     material, said = material_of(model, gears)
     values = {**_values(model, chosen, gears), **_roots(roots), **material}
+    mesh = MeshAssumptions(_backlash(model, chosen))
     try:
         pair = GearPair(**values, halves=halves)
-        check_proportions(pair, {})
+        check_proportions(pair, vars(mesh))
     except ParameterError as error:
         raise ParameterError(f"{file}: {error}") from None
-    lines = [*said, *(line for root in roots for line in root.lines), *unread_flanks(model, gears)]
-    return GearJob(pair, unread=tuple(lines))
+    lines = [*said, *(line for root in roots for line in root.lines)]
+    lines += [*unread_values(model, gears, pair), *unread_flanks(model, gears)]
+    return GearJob(pair, mesh=mesh, unread=tuple(lines))
+
+
+def _backlash(model: Model, stage: str) -> float | None:
+    """Mean of the least and the largest normal backlash, or what is given of both, in m."""
+    names = ("minimum_normal_backlash", "maximum_normal_backlash")
+    given = [optional(model, stage, name, "length") for name in names]
+    known = [value for value in given if value is not None]
+    return math.fsum(known) / len(known) if any(known) else None
 
 
 def _roots(roots: list[Root]) -> dict[str, Any]:
@@ -88,17 +101,21 @@ def _values(model: Model, stage: str, gears: list[str]) -> dict[str, Any]:
             f"{math.degrees(helix[1]):g} deg of an external pair must be opposite"
         )
     tips = [optional(model, gear, "tip_diameter", "length") for gear in gears]
+    tops = [optional(model, g, "addendum_coefficient_basic_profile", "number") for g in gears]
+    common = optional(model, stage, "common_face_width", "length")
+    widths = [value_of(model, gear, "face_width", "length") for gear in gears]
     bores = [optional(model, gear, "inner_diameter", "length") for gear in gears]
     return {
         "number_of_teeth": [_teeth(model, gear) for gear in gears],
         "normal_module": _shared(model, gears, "normal_module", "length"),
         "normal_pressure_angle": _shared(model, gears, "normal_pressure_angle", "angle"),
         "helix_angle": helix[0],
-        "face_width": min(value_of(model, gear, "face_width", "length") for gear in gears),
+        "face_width": min(*widths, common or math.inf),
         "center_distance": attribute(model, stage, "center_distance", "length"),
         "profile_shift_coefficient": [
             value_of(model, g, "addendum_modification_coefficient", "number") for g in gears
         ],
+        "addendum_coefficient": [1.0 if top is None else top for top in tops],
         "tip_radius": [None if tip is None else 0.5 * tip for tip in tips],
         "bore_diameter": [bore or 0.0 for bore in bores],
     }

@@ -1,10 +1,11 @@
-"""Tools of a REXS file: what the root of a gear has from the tool that cuts it.
+"""Roots of gears in a REXS file: by the tool that cuts the gear, or by its root diameter.
 
 Since REXS 1.3 a relation ties each flank (workpiece) to the tool and the settings of a step of its
 manufacturing; before, one ties the gear (origin) to the tool (referenced). Only the tip of the
 tool's profile is read: what else a tool has by the name of an attribute of gears is its own.
 """
 
+import math
 import re
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -18,6 +19,7 @@ from herringbone.gears.files.rexs_model import (
     optional,
     present,
     related,
+    value_of,
 )
 
 CUTTER = "cutter_wheel_tool"
@@ -30,7 +32,7 @@ _BASIS = (("normal_module", "length"), ("normal_pressure_angle", "angle"))
 
 
 class Root(NamedTuple):
-    """Dedendum and fillet radius of a gear in modules, None where no tool has them, and lines."""
+    """Dedendum and fillet radius of a gear in modules, None where the file has none, and lines."""
 
     dedendum: float | None
     fillet: float | None
@@ -43,8 +45,8 @@ class _Step(NamedTuple):
     settings: str
 
 
-def root_by_tool(model: Model, gear: str) -> Root:
-    """The root of a gear by its tool, the last of several.
+def root_of(model: Model, gear: str) -> Root:
+    """The root of a gear by its tool, the last of several, or else by its root diameter.
 
     Raises:
         ResourceError: an attribute is no number; or the tools of both flanks differ.
@@ -53,7 +55,8 @@ def root_by_tool(model: Model, gear: str) -> Root:
     last = {step.workpiece: step for step in steps if _cuts(model, gear, step.tool)}
     if not last:
         tools = list(dict.fromkeys(step.tool for step in steps))
-        return Root(None, None, (f"{_cut_by(model, gear, tools)}: {_UNFIT}",) if tools else ())
+        lines = (f"{_cut_by(model, gear, tools)}: {_UNFIT}",) if tools else ()
+        return Root(_by_diameter(model, gear), None, lines)
     profiles = [_profile(model, step.tool) for step in last.values()]
     for name, values in zip((_ADDENDUM, _RADII[0]), zip(*profiles, strict=True), strict=True):
         if any(_differ(values[0], value) for value in values):
@@ -66,10 +69,21 @@ def root_by_tool(model: Model, gear: str) -> Root:
     return Root(*profiles[0], tuple(_lines(model, gear, tools, taken)))
 
 
-_UNFIT = (
-    f"not read for want of {_ADDENDUM}, or by another module or pressure angle than the gear's; "
-    "the dedendum is 1.25 modules"
-)
+_UNFIT = f"not read for want of {_ADDENDUM}, or by another module or pressure angle than the gear's"
+
+
+def _by_diameter(model: Model, gear: str) -> float | None:
+    """h_fP = (d - d_f) / (2 m_n) + x, if there is a root diameter."""
+    root = optional(model, gear, "root_diameter", "length")
+    if not root:
+        return None
+    module = value_of(model, gear, "normal_module", "length")
+    teeth = value_of(model, gear, "number_of_teeth", "number")
+    helix = value_of(model, gear, "helix_angle_reference_diameter", "angle")
+    shift = value_of(model, gear, "addendum_modification_coefficient", "number")
+    if module == 0.0:
+        return None
+    return 0.5 * (teeth / math.cos(helix) - root / module) + shift
 
 
 def _steps(model: Model, gear: str) -> Iterator[_Step]:
