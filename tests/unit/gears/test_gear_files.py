@@ -62,6 +62,10 @@ def test_one_relief_is_that_of_both_gears(tmp_path):
         ('["95 mm", 0.310]', "[95, 310]", "groove diameter 95000 mm must lie between"),
         ('["5 um", 0.0]', "[0, 5]", r"1.43e\+03 times .*write '5 um'"),
         ("[table]", "[mesh]\nbacklash = 180\n[table]", "write '180 um'"),
+        ("[modif", "density = 7.85\n[modif", "between 500 and 25000 kg/m3; write '7.85 g/cm3' if"),
+        ("[modif", "youngs_modulus = 206\n[modif", r"1e\+12 Pa; write '206 GPa' if that is meant"),
+        ("[modif", "youngs_modulus = 2.06e5\n[modif", "write '206000 MPa' if that is meant"),
+        ("[modif", "youngs_modulus = '2.06e9 MPa'\n[modif", r"= 2.06e\+15 Pa must .*1e\+12 Pa$"),
         ("[table]", "[mesh]\nbacklash = [0, 0]\n[table]", "must be one value"),
         ("[table]", "[table]\nloads = 5.0", "must be a list"),
         (

@@ -12,11 +12,16 @@ if TYPE_CHECKING:
     from herringbone.gears.geometry.gear_pair import GearPair
 
 GEARS = ("pinion", "wheel")
-_POSITIVE = ("normal_module", "face_width", "youngs_modulus", "density")
+_POSITIVE = ("normal_module", "face_width")
 _OPTIONAL = {
     "center_distance", "profile_shift_coefficient", "root_fillet_radius_coefficient",
     "tip_radius", "groove_diameter",
 }  # fmt: skip
+_MATERIAL = {
+    "youngs_modulus": (1e8, 1e12, "Pa", {"GPa": 1e9, "MPa": 1e6}),
+    "density": (500.0, 25e3, "kg/m3", {"g/cm3": 1e3}),
+}
+"""Bounds of what gears are made of, the unit, and units that may be meant without being said."""
 _ROUNDING = 0.01
 """Backlash that published dimensions may lack by rounding, in modules."""
 
@@ -34,6 +39,7 @@ def check_given(pair: "GearPair") -> None:
     _check_angles(pair)
     if pair.halves not in {1, 2}:
         raise ParameterError(f"halves = {pair.halves} must be 1 (single) or 2 (double helical)")
+    _check_material(pair)
     if not -1.0 < pair.poissons_ratio < 0.5:
         raise ParameterError(f"Poisson's ratio {pair.poissons_ratio:g} must lie below 0.5")
     if pair.normal_module > 0.2:
@@ -59,6 +65,18 @@ def _check_numbers(pair: "GearPair") -> None:
     for name in _POSITIVE:
         if not 0.0 < getattr(pair, name) < math.inf:
             raise ParameterError(f"{name} = {getattr(pair, name):g} must be positive (SI units)")
+
+
+def _check_material(pair: "GearPair") -> None:
+    for name, (least, most, unit, others) in _MATERIAL.items():
+        value = getattr(pair, name)
+        if least <= value <= most:
+            continue
+        meant = (other for other, si in others.items() if least <= value * si <= most)
+        hint = "".join(f"; write '{value:g} {other}' if that is meant" for other in [*meant][:1])
+        raise ParameterError(
+            f"{name} = {value:g} {unit} must lie between {least:g} and {most:g} {unit}{hint}"
+        )
 
 
 def _check_angles(pair: "GearPair") -> None:
