@@ -66,6 +66,16 @@ def test_json_has_the_figures_of_the_table_in_si_units(tmp_path, capsys):
     ratio = stiffness["load"][at] / stiffness["deflection"][at] / stiffness["secant"][at]
     assert ratio == pytest.approx(1.0, abs=1e-3)  # harmonics of 2 %: means of s and 1/s differ
     assert all(Path(file).is_file() for file in found["files"])
+    assert found["notes"] == []
+
+
+def test_json_has_the_notes(tmp_path):
+    """Those that stand below the table."""
+    notes = json.loads(gear(STAGE, tmp_path, method="slices", as_json=True))["notes"]
+    assert notes == [
+        f"{STAGE}: cylindrical_gear 'Wheel' has no material; material 'Steel' is taken"
+    ]
+    assert f"note: {notes[0]}" in gear(STAGE, tmp_path, method="slices").splitlines()
 
 
 def test_rexs_with_torque_and_halves(tmp_path):

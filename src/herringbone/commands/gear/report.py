@@ -44,7 +44,7 @@ def gear(
         halves: of a REXS stage; 1 if None.
         conditions: of the load; None: the usual ones.
         progress: called with what is done and the share of the work, 0 to 1.
-        as_json: one JSON object, in SI units and rad, instead of the table.
+        as_json: one JSON object, in SI units and rad, instead of table and notes.
 
     Returns:
         The table as text, and where the files are.
@@ -65,11 +65,12 @@ def gear(
     loaded = loaded_figures(job, mesh, stiffness, conditions)
     folder = output or Path("results") / f"gear-{file.stem}"
     written = [str(path) for path in _write(stiffness, loaded, folder, file.stem)]
+    notes = [*job.unread, *job.unused(method), *backlash_notes(job)]
     if as_json:
-        return json.dumps({**gear_figures(job, stiffness, loaded), "files": written})
-    said = (*job.unread, *job.unused(method), *backlash_notes(job))
-    notes = [f"note: {note}" for note in said]
-    lines = [gear_tables(job, stiffness, loaded), "", *notes, f"Files: {', '.join(written)}"]
+        figures = gear_figures(job, stiffness, loaded)
+        return json.dumps({**figures, "notes": notes, "files": written})
+    said = [f"note: {note}" for note in notes]
+    lines = [gear_tables(job, stiffness, loaded), "", *said, f"Files: {', '.join(written)}"]
     if job.pair.halves == 2:
         lines.append(f"In a gearbox: herringbone run SYSTEM --gear {file}")
     return "\n".join(lines)
