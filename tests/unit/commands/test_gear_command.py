@@ -85,6 +85,17 @@ def test_rexs_with_torque_and_halves(tmp_path):
     assert "In a gearbox" not in gear(STAGE, tmp_path / "single", method="slices")
 
 
+def test_stages_of_one_file_have_folders_of_their_own(tmp_path, monkeypatch):
+    """And the command that takes the stage into a gearbox names it."""
+    monkeypatch.chdir(tmp_path)
+    text = gear(STAGE, method="slices", halves=2, stage="10")
+    assert text.endswith(f"In a gearbox: herringbone run SYSTEM --gear {STAGE}#10")
+    text = gear(STAGE, method="slices", halves=2, stage="First stage")
+    assert text.endswith(f'--gear "{STAGE}#First stage"')
+    folders = {path.name for path in (tmp_path / "results").iterdir()}
+    assert folders == {"gear-gear_stage-10", "gear-gear_stage-First_stage"}
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

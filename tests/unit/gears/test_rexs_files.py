@@ -82,6 +82,8 @@ def test_rexs_stage():
         ('unit="">27', 'unit="">27.5', "number of teeth 27.5 must be an integer"),
         ('type="cylindrical_stage"', 'type="bevel_stage"', "it has no cylindrical_stage"),
         ('role="gear_2"', 'role="gear_3"', "has no relation to two cylindrical_gears"),
+        ('12" name="Wheel" type="cylindrical_gear"', '12" name="Wheel" type="ring_gear"',
+         "ring_gear 'Wheel' of stage 'First stage' is an internal gear; only external pairs"),
         ("<model", "<models", "is not well-formed"),
         ('mm">190', 'mm">18', "bad.rexs: center distance 18.0000 mm is impossible"),
         ('"face_width" unit="mm"', '"face_width" unit="m"', "bad.rexs: face_width = 50 m is 384"),
@@ -160,6 +162,18 @@ def test_stage_is_chosen(tmp_path):
     assert chosen.pair == read_rexs_job(file, stage="10", halves=2).pair
     with pytest.raises(HerringboneError, match="--stage is of REXS files only"):
         read_mounted_job(tmp_path / "own.toml#10")
+
+
+def test_what_a_stage_does_not_tell_of_both_halves_is_said():
+    """Its width is that of a half, its hand that of the left one; it has no gap."""
+    notes = pair_values(read_mounted_job(STAGE))[1]
+    assert any("a REXS stage has one face width, 50 mm; it is taken as that" in x for x in notes)
+    assert any(
+        "has no gap between the halves and no shaft stubs, which are taken as 0, and one helix "
+        "angle, 21 deg, which is taken as that of the left half" in note
+        for note in notes
+    )
+    assert not any("REXS stage" in line for line in read_job(STAGE).unread)
 
 
 def test_other_xml(tmp_path):

@@ -41,7 +41,9 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
         "--pinion-axial-stiffness",
         help="with it, in N/m: 0 (default: the pinion floats), or rigid",
     )
-    sub.add_argument("-o", "--output", type=Path, help="folder; results/gear-FILE if not given")
+    sub.add_argument(
+        "-o", "--output", type=Path, help="folder; results/gear-FILE[-STAGE] if not given"
+    )
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 

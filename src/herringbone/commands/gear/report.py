@@ -1,6 +1,7 @@
 """What `herringbone gear` shows and writes: table, picture, stiffness table."""
 
 import json
+import re
 from pathlib import Path
 
 from herringbone.commands.gear.loaded import flank_text
@@ -8,6 +9,7 @@ from herringbone.commands.gear.tables import gear_figures, gear_tables
 from herringbone.commands.output import written_into
 from herringbone.core.places.files import write_whole
 from herringbone.gears.files.read_job import read_job
+from herringbone.gears.files.rexs import STAGE_MARK
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.job import GearJob
 from herringbone.gears.job_stiffness import stiffness_for
@@ -19,6 +21,8 @@ from herringbone.gears.stiffness.point_mesh import Progress, silent
 
 TABLE, FLANKS = "mesh_stiffness.csv", "flank_load.csv"
 PICTURE, LOAD_PICTURE = "gear_pair.png", "gear_load.png"
+_UNUSUAL = re.compile(r"[^\w.-]")
+"""What names of folders should not have."""
 
 
 def gear(
@@ -37,7 +41,7 @@ def gear(
 
     Args:
         file: gear file (.toml) or REXS file (.rexs, .xml).
-        output: folder; results/gear-NAME if None.
+        output: folder; results/gear-NAME if None, or results/gear-NAME-STAGE.
         method: of the mesh stiffness; the file's if None.
         torque: of the pinion [N m]; the file's if None.
         stage: of a REXS file.
@@ -63,7 +67,7 @@ def gear(
     stiffness = stiffness_for(job, method, progress)
     mesh = METHODS[chosen_method(job.method if method is None else method)].mesh(job.task(), silent)
     loaded = loaded_figures(job, mesh, stiffness, conditions)
-    folder = output or Path("results") / f"gear-{file.stem}"
+    folder = output or Path("results") / _folder_name(file, stage)
     written = [str(path) for path in _write(stiffness, loaded, folder, file.stem)]
     notes = [*job.unread, *job.unused(method), *backlash_notes(job)]
     if as_json:
@@ -72,8 +76,20 @@ def gear(
     said = [f"note: {note}" for note in notes]
     lines = [gear_tables(job, stiffness, loaded), "", *said, f"Files: {', '.join(written)}"]
     if job.pair.halves == 2:
-        lines.append(f"In a gearbox: herringbone run SYSTEM --gear {file}")
+        of_stage = "" if stage is None else f"{STAGE_MARK}{stage}"
+        lines.append(f"In a gearbox: herringbone run SYSTEM --gear {_word(f'{file}{of_stage}')}")
     return "\n".join(lines)
+
+
+def _folder_name(file: Path, stage: str | None) -> str:
+    """gear-FILE, or gear-FILE-STAGE, as stages of one file have results of their own."""
+    name = f"gear-{file.stem}"
+    return name if stage is None else f"{name}-{_UNUSUAL.sub('_', stage)}"
+
+
+def _word(text: str) -> str:
+    """As one word of a command line."""
+    return f'"{text}"' if " " in text else text
 
 
 def _write(stiffness: MeshStiffness, loaded: Loaded, folder: Path, name: str) -> list[Path]:

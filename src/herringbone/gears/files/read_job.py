@@ -35,7 +35,7 @@ def read_job(file: Path, *, stage: str | None = None, halves: int | None = None)
     return read_gear_file(file)
 
 
-def is_rexs(file: Path) -> bool:
+def _is_rexs(file: Path) -> bool:
     """True for a file of the kind that has no number of halves."""
     return file.suffix.lower() != ".toml"
 
@@ -46,7 +46,7 @@ def read_mounted_job(file: Path) -> GearJob:
     A stage of REXS has one face width, here that of one half. Of a file of several stages one is
     chosen by its id or name behind the file's: unit.rexs#2.
     """
-    if not is_rexs(file):
+    if not _is_rexs(file):
         return read_job(file)
     name, chosen, stage = file.name.rpartition(STAGE_MARK)
     if chosen and name and not is_file(file):

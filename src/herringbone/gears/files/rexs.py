@@ -31,6 +31,7 @@ from herringbone.gears.files.rexs_model import (
     SAME,
     Model,
     attribute,
+    named,
     optional,
     read_model,
     value_of,
@@ -41,7 +42,7 @@ from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
 from herringbone.gears.mesh_assumptions import MeshAssumptions
 
-_STAGE = "cylindrical_stage"
+_STAGE, _INTERNAL = "cylindrical_stage", "ring_gear"
 STAGE_MARK = "#"
 """Between the file and the id or name of a stage, where one text names both."""
 
@@ -72,7 +73,20 @@ def read_rexs_job(file: str | Path, *, stage: str | None = None, halves: int = 1
         raise ParameterError(f"{file}: {error}") from None
     lines = [*said, *(line for root in roots for line in root.lines)]
     lines += [*unread_values(model, gears, pair), *unread_flanks(model, gears)]
+    if halves == 2:
+        lines += _as_halves(f"{file}: a REXS stage", pair)
     return GearJob(pair, mesh=mesh, unread=tuple(lines))
+
+
+def _as_halves(stage: str, pair: GearPair) -> list[str]:
+    """Lines on what a stage does not tell of a double-helical pair."""
+    return [
+        f"{stage} has one face width, {1e3 * pair.face_width:.4g} mm; it is taken as that of each "
+        "half of a double-helical pair",
+        f"{stage} has no gap between the halves and no shaft stubs, which are taken as 0, and one "
+        f"helix angle, {math.degrees(pair.helix_angle):g} deg, which is taken as that of the left "
+        "half; in a gear file give gap_width, groove_diameter, shaft_diameter, stub_length",
+    ]
 
 
 def _backlash(model: Model, stage: str) -> float | None:
@@ -140,15 +154,24 @@ def _stage(model: Model, wanted: str | None) -> str:
 
 
 def _gears(model: Model, stage: str) -> list[str]:
+    named_stage = f"stage '{model.components[stage].name}'"
     for relation in model.relations:
-        roles = {role: i for role, i in relation}
-        if roles.get("stage") == stage and {"gear_1", "gear_2"} <= set(roles):
-            gears = [roles["gear_1"], roles["gear_2"]]
-            if all(g in model.components and model.components[g].type == GEAR for g in gears):
-                return gears
+        roles = dict(relation)
+        if roles.get("stage") != stage or not {"gear_1", "gear_2"} <= set(roles):
+            continue
+        gears = [roles["gear_1"], roles["gear_2"]]
+        types = [model.components[g].type if g in model.components else "" for g in gears]
+        if types == [GEAR, GEAR]:
+            return gears
+        if _INTERNAL in types:
+            internal = named(model, gears[types.index(_INTERNAL)])
+            raise ResourceError(
+                f"{model.file}: {internal} of {named_stage} is an internal gear; only external "
+                "pairs are computed"
+            )
     raise ResourceError(
-        f"{model.file}: stage '{model.components[stage].name}' has no relation to two "
-        f"{GEAR}s with the roles gear_1 and gear_2"
+        f"{model.file}: {named_stage} has no relation to two {GEAR}s with the roles gear_1 and "
+        "gear_2"
     )
 
 

@@ -15,7 +15,7 @@ from herringbone.core.places.part_path import PartPath
 from herringbone.core.wording import option
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.gears.accuracy.given import GivenDeviations
-from herringbone.gears.files.read_job import is_rexs, read_mounted_job
+from herringbone.gears.files.read_job import read_mounted_job
 from herringbone.gears.job import GearJob
 from herringbone.gears.pair_values import pair_values
 from herringbone.gears.table_cache import cached_deviations, cached_pair_law, cached_table
@@ -46,11 +46,6 @@ def with_gears(
             raise ParameterError(f"{what}: {part} is a foreign FMU; nothing of a pair can be set")
         job = gear if isinstance(gear, GearJob) else read_mounted_job(Path(gear))
         jobs[part] = job
-        if not isinstance(gear, GearJob) and is_rexs(Path(gear)):
-            notes.append(
-                f"{gear}: a REXS stage has one face width, {1e3 * job.pair.face_width:.4g} mm; it "
-                "is taken as that of each half of a double-helical pair"
-            )
         values, said = _values(system, part, job, what)
         system, kept = _fitted(system, values)
         notes += (*said, *kept)
