@@ -68,6 +68,7 @@ def test_one_relief_is_that_of_both_gears(tmp_path):
         ("[modif", "youngs_modulus = '2.06e9 MPa'\n[modif", r"= 2.06e\+15 Pa must .*1e\+12 Pa$"),
         ("[table]", "[mesh]\nbacklash = [0, 0]\n[table]", "must be one value"),
         ("[table]", "[table]\nloads = 5.0", "must be a list"),
+        ("[table]", "[table]\nunread = 5.0", r"\[table\] unread is unknown"),
         (
             "number_of_teeth = [27, 81]",
             "number_of_teeth = 27",

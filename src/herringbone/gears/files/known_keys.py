@@ -20,8 +20,8 @@ SECTIONS: dict[str, type] = {
     "mesh": MeshAssumptions,
     "deviations": GivenDeviations,
 }
-_OF_OTHERS = {"pair", "modification", "mesh", "deviations"}
-"""What a job has from the other sections."""
+_OF_OTHERS = {"pair", "modification", "mesh", "deviations", "unread"}
+"""What a job has from the other sections, or from how its file was read."""
 _WIDTH = 98
 _ENTRY = re.compile(r"^    ([a-z_]+(?:, [a-z_]+)*): ")
 
