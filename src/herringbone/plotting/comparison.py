@@ -9,7 +9,7 @@ from herringbone.analysis.accuracy.comparison import Comparison
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum
 from herringbone.core.wording import percent
-from herringbone.plotting.panels import DECADES, HIGHEST, close_up, mark_orders
+from herringbone.plotting.panels import DECADES, HIGHEST, PADDING, close_up, mark_orders
 from herringbone.plotting.style import (
     COLOURS,
     draw_line,
@@ -75,7 +75,7 @@ def _spectrum(
     if part.rows.stop - part.rows.start < FEWEST_SAMPLES:
         return
     values = side.result.data[column].to_numpy(float)[part.rows] * factor
-    found = amplitude_spectrum(values, part.sample_step)
+    found = amplitude_spectrum(values, part.sample_step, padding=PADDING)
     shown = found.frequency <= highest
     floor = float(found.amplitude.max()) * 10.0 ** -(DECADES + 1.0)
     draw_line(axes, found.frequency[shown], np.maximum(found.amplitude[shown], floor), **how)

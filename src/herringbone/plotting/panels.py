@@ -22,9 +22,10 @@ MM = 1e3
 """Of SI lengths and velocities, as they are shown."""
 DECADES = 3.5
 """Range of amplitudes in a spectrum."""
+PADDING = 4
+"""Of spectra: without it, lines between two bins are drawn up to 15 % low."""
 _CLOSE_UP_SHARE, _CLOSE_UP_ROWS = 0.05, 100
 _MOST_MARKS = 9
-_PADDING = 2
 _FEW_BINS = 60
 """A spectrum of fewer independent frequencies shows them as points."""
 _LARGE = 1e6
@@ -178,7 +179,7 @@ def spectrum_panel(
         axes.text(0.5, 0.5, f"no spectrum: {why}", ha="center", transform=axes.transAxes)
         return
     signals = result.data[list(columns.values())].to_numpy()[part.rows] * factor
-    spectrum = amplitude_spectrum(signals, part.sample_step, padding=_PADDING)
+    spectrum = amplitude_spectrum(signals, part.sample_step, padding=PADDING)
     recorded = float(spectrum.frequency[-1])
     highest = min(highest, recorded)
     shown = spectrum.frequency <= highest
@@ -186,7 +187,7 @@ def spectrum_panel(
     cut = f", cut at {highest:.0f} of {recorded:.0f} Hz" if highest < recorded else ""
     axes.set_xlabel(f"frequency (resolution {spectrum.resolution:.3g} Hz{cut}) [Hz]")
     coarse = highest / spectrum.resolution < _FEW_BINS
-    marks = {"marker": "o", "markersize": 3.0, "markevery": _PADDING} if coarse else {}
+    marks = {"marker": "o", "markersize": 3.0, "markevery": PADDING} if coarse else {}
     top = float(amplitude.max())
     for i, name in enumerate(columns):
         height = np.maximum(amplitude[:, i], top * 10.0 ** -(DECADES + 1.0))

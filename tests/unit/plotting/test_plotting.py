@@ -12,6 +12,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 from support.result import make_foreign_result, make_result
 
+from herringbone.analysis.accuracy.comparison import compare
+from herringbone.analysis.figures.operating_point import steady_part
+from herringbone.analysis.figures.sensing.sensors import sensor_figures
 from herringbone.core import Outcome, OutcomeKind, ParameterError
 from herringbone.plotting import (
     PICTURES,
@@ -23,6 +26,8 @@ from herringbone.plotting import (
     torques,
     write_pictures,
 )
+from herringbone.plotting.comparison import comparison
+from herringbone.plotting.runs.sensors import sensors
 from herringbone.plotting.style import depths, envelope, scaled_unit
 
 
@@ -99,7 +104,7 @@ def test_spectra_have_one_legend_in_the_title_line(rig):
 
 def test_spectra_tell_their_resolution(rig):
     """160 ms make lines; the 8 ms of a short run make a point every 125 Hz."""
-    for result, resolution, step in ((rig, 6.25, None), (make_result(t_end=0.01), 124.7, 2)):
+    for result, resolution, step in ((rig, 6.25, None), (make_result(t_end=0.01), 124.7, 4)):
         for axes in panels(spectra(result)):
             told = f"frequency (resolution {resolution:.3g} Hz, cut at 3000 of 25000 Hz) [Hz]"
             assert axes.get_xlabel() == told
@@ -115,6 +120,52 @@ def test_spectra_go_to_the_highest_line_asked(rig):
         axes = panels(spectra(rig, highest))[0]
         assert axes.get_xlabel() == f"frequency (resolution 6.25 Hz{label}) [Hz]"
         assert axes.get_xlim()[1] == pytest.approx(min(highest, 25000.0))
+
+
+DRAWN = (0.9896, 1.001)
+"""Peaks at most an eighth of a bin off: sin(pi/8) / (pi/8) / (1 - 1/64) = 0.98996."""
+
+
+def between_bins(time):
+    """A unit cosine whose frequency lies half-way between two of its record's bins."""
+    duration = time.size * (time[-1] - time[0]) / (time.size - 1)
+    return np.cos(2.0 * np.pi * (int(300.0 * duration) + 0.5) / duration * time + 0.3)
+
+
+def highest_lines(axes):
+    return [float(np.max(line.get_ydata())) for line in axes.lines if len(line.get_xdata()) > 2]
+
+
+def with_wave(rig, columns):
+    part, wave = steady_part(rig).rows, np.zeros(len(rig.data))
+    wave[part] = between_bins(rig.data["time"].to_numpy()[part])
+    return replace(rig, data=rig.data.assign(**dict.fromkeys(columns, wave)))
+
+
+def test_spectra_draw_lines_between_bins(rig):
+    waving = with_wave(rig, [c for c in rig.data if ".f_y" in c])
+    drawn = highest_lines(panels(spectra(waving))[0])
+    assert len(drawn) == 4
+    assert all(DRAWN[0] < line < DRAWN[1] for line in drawn)
+
+
+def test_comparisons_draw_lines_between_bins(rig):
+    waving = with_wave(rig, ["gearbox.gear_mesh.mesh_left.force"])
+    found = compare(waving, rig, "*.mesh_left.force")
+    axes = panels(comparison(found))[1]
+    assert DRAWN[0] < highest_lines(axes)[0] < DRAWN[1]
+
+
+def test_sensors_draw_lines_between_bins(rig, monkeypatch):
+    figures, _ = sensor_figures(rig)
+    for name, one in figures.items():
+        velocity = np.zeros(one.time.size)
+        velocity[one.steady] = 1e-3 * between_bins(one.time[one.steady])
+        figures[name] = replace(one, velocity=velocity)
+    monkeypatch.setattr(f"{sensors.__module__}.sensor_figures", lambda _: (figures, {}))
+    drawn = highest_lines(panels(sensors(rig))[2])
+    assert len(drawn) == 3
+    assert all(DRAWN[0] < line < DRAWN[1] for line in drawn)
 
 
 def test_spectra_say_which_halves_coincide(rig):

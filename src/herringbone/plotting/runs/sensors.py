@@ -9,7 +9,7 @@ from herringbone.analysis.figures.sensing.sensors import SensorFigures, sensor_f
 from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
 from herringbone.core import ParameterError
-from herringbone.plotting.panels import DECADES, MM, headline
+from herringbone.plotting.panels import DECADES, MM, PADDING, headline
 from herringbone.plotting.style import (
     COLOURS,
     MARKER_COLOUR,
@@ -63,7 +63,7 @@ def _spectrum(axes: Axes, one: SensorFigures, how: dict) -> None:
     samples = one.velocity[one.steady]
     if len(samples) < FEWEST_SAMPLES:
         return
-    found = amplitude_spectrum(samples, 1.0 / one.chain.sampling_hz)
+    found = amplitude_spectrum(samples, 1.0 / one.chain.sampling_hz, padding=PADDING)
     top = float(found.amplitude.max())
     height = np.maximum(found.amplitude, top * 10.0 ** -(DECADES + 1.0))
     draw_line(axes, found.frequency, MM * height, **how)
