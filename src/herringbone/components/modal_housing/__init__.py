@@ -18,11 +18,12 @@ Modes of kind "residual" are pseudo modes that make the static compliance at the
 "rigid" modes have no stiffness. The data that come along are described in HOUSING.md.
 
 The seats are about as soft as the bearings, so the coupling has to go both ways. On the test rig
-(scene loaded), the motion of the seats changes the vibration of the bearing forces (rms about the
-mean) by a factor of 0.68 radially at the pinion, 2.08 radially and 9.29 axially at the wheel,
-against bearings on rigid ground whose forces only drive the housing. Below 300 Hz, the structural
-modes of the rig on rigid ground and of the housing alone lie at 174.1 and 249.3 Hz; coupled, they
-lie at 170.1 and 173.3 Hz.
+(scene loaded, steady rotation), the motion of the seats changes the vibration of the bearing forces
+(rms about the mean) by a factor of 0.676 radially at the pinion, 2.05 radially and 9.18 axially at
+the wheel, against bearings on rigid ground whose forces only drive the housing. On rigid ground the
+wheel on its axial bearing has its mode at 305.0 Hz, the housing alone its lowest at 249.3 Hz;
+coupled, the lowest mode of both lies at 170.1 Hz. The torsional mode of drive motor and coupling
+hardly changes: from 174.1 to 173.3 Hz.
 
 Source: K. S. Bathe, Finite Element Procedures, section 9.3 (mode superposition).
 """
