@@ -11,8 +11,9 @@ Columns = Mapping[str, Callable[[Variable], str]]
 _INTRODUCTION = """\
 This file is made by `python -m herringbone.fmi.generate`; edit the component's module instead.
 SI units throughout. Every input, and every output marked as polynomial, is a polynomial over the
-communication step when `interface_degree` is set: `X.node1` ... `X.node4` are its values inside
-the step. At degree 0, the start value, inputs are held.
+communication step when `interface_degree` is set to its degree n: `X.node1` ... `X.node<n>` are
+its values at 1/n, 2/n, ... 1 of the step. An input `X` is the value at the step's begin, an output
+`X` that at its end. At degree 0, the start value, inputs are held.
 """
 
 
@@ -64,6 +65,8 @@ def _sections(declaration: Declaration, resources: str) -> Iterable[tuple[str, s
         **_DESCRIBED,
     }
     yield "Outputs", _table(declaration.outputs, outputs)
+    if declaration.locals:
+        yield "Local variables", _table(declaration.locals, {**_NAMED, **_DESCRIBED})
     parameters: Columns = {
         **_NAMED,
         "start": _start,

@@ -18,6 +18,15 @@ def test_readme(name):
 
 
 @pytest.mark.parametrize("name", COMPONENTS)
+def test_readme_lists_every_variable(name):
+    text = readme(COMPONENTS[name])
+    missing = [
+        v.name for v in COMPONENTS[name].declaration.variables if f"| `{v.name}` |" not in text
+    ]
+    assert not missing
+
+
+@pytest.mark.parametrize("name", COMPONENTS)
 def test_script(name):
     committed = (COMPONENTS[name].folder / f"{name}.py").read_text(encoding="utf-8")
     assert committed == script(COMPONENTS[name]), "run python -m herringbone.fmi.generate"

@@ -145,6 +145,22 @@ def test_recovered_and_lost_power_are_the_mechanical_power(speed, torque, effici
         assert load["recovered_power"] == pytest.approx(efficiency * torque * speed, rel=1e-14)
 
 
+@pytest.mark.parametrize("degree", [1, 2, 3, 4])
+def test_nodes_of_degree_n_lie_at_k_nths_of_the_step(degree):
+    """J w' = r t: w = r t^2 / (2 J). An input is the value at the begin, an output at the end."""
+    load, h, rate = motor(LOAD_MOTOR), 4e-3, 1e5
+    load.set("interface_degree", degree)
+    for begin in (0.0, h):
+        load.set("flange.tau", rate * begin)
+        for node in range(1, degree + 1):
+            load.set(f"flange.tau.node{node}", rate * (begin + h * node / degree))
+        assert load.step(begin, h) == 0
+        times = begin + h * np.arange(1, degree + 1) / degree
+        found = [load[f"flange.w.node{node}"] for node in range(1, degree + 1)]
+        assert found == pytest.approx(rate * times**2 / (2.0 * 2.0), rel=1e-12)
+        assert load["flange.w"] == found[-1]
+
+
 @pytest.mark.parametrize(
     ("component", "setpoint"), [(DRIVE_MOTOR, "speed_setpoint"), (LOAD_MOTOR, "torque_setpoint")]
 )

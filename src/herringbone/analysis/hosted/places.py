@@ -154,7 +154,6 @@ class Places:
         offsets = tuple(index[offset(f)] for f in shafts)
         turning = f"{self.boundary.pair}.{rotation(self.boundary, self.parts)}"
         names = dict.fromkeys(v.name.rpartition(".guess_")[0] for v in guesses)
-        locals_ = [v for v in d.variables if v.causality is Causality.LOCAL and not v.state]
         forces = [
             self.inside[full_name(i, v.name)]
             for i in self.parts.instances
@@ -187,7 +186,7 @@ class Places:
             forces=tuple(forces),
             clearances=self._clearances(),
             locals=tuple(
-                (index[v.name], self.hosted[v.name]) for v in locals_ if self._is_local(v.name)
+                (index[v.name], self.hosted[v.name]) for v in d.locals if self._is_local(v.name)
             ),
             keeps_states=self.boundary.wanted.exchange or self.boundary.wanted.internals,
             scratch=d.size - d.tables + sum(i.block.size for i in self.parts.instances),

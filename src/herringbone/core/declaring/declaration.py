@@ -144,6 +144,11 @@ class Declaration:
         return self._select(Causality.OUTPUT)
 
     @cached_property
+    def locals(self) -> tuple[Variable, ...]:
+        """All locals that are no states."""
+        return tuple(v for v in self._select(Causality.LOCAL) if not v.state)
+
+    @cached_property
     def parameters(self) -> tuple[Variable, ...]:
         """All real parameters."""
         return self._select(Causality.PARAMETER)
@@ -188,8 +193,8 @@ class Declaration:
         index = {v.name: i for i, v in enumerate(self.states)}
         position = self.first_input
         plain_outputs = tuple(v for v in self.outputs if not v.nodes)
-        locals_ = tuple(v for v in self._select(Causality.LOCAL) if not v.state)
-        for v in (*self.inputs, *self.node_outputs, *plain_outputs, *locals_, *self.parameters):
+        plain = (*plain_outputs, *self.locals)
+        for v in (*self.inputs, *self.node_outputs, *plain, *self.parameters):
             if v is self.parameters[0]:
                 position += self.kept
             index[v.name] = position
