@@ -3,10 +3,11 @@
     J w' = tau - T - viscous_friction w,   phi' = w
     T' = (torque_setpoint - T) / torque_time_constant
 
-T brakes rotation in driving direction. Of the mechanical power T w the generator recovers
-`efficiency`; the rest is lost, and so is the friction power:
+T brakes rotation in driving direction. While T w > 0 the motor is a generator and feeds
+`efficiency` of it back; while T w < 0 it drives, and takes more than it gives:
 
-    recovered_power + loss_power = T w + viscous_friction w^2
+    recovered_power = efficiency T w   where T w > 0,   T w / efficiency   where T w < 0
+    loss_power = T w - recovered_power + viscous_friction w^2
 
 A Runge-Kutta step is never longer than 1 / (fastest own rate), of viscous_friction / J and
 1 / torque_time_constant: a light rotor would run away in the steps of `micro_step`.

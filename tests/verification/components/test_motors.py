@@ -141,8 +141,8 @@ def test_recovered_and_lost_power_are_the_mechanical_power(speed, torque, effici
     mechanical = torque * speed + 2.0 * speed**2
     assert load["recovered_power"] + load["loss_power"] == pytest.approx(mechanical, rel=1e-13)
     assert load["loss_power"] >= 2.0 * speed**2 - 1e-9  # friction, and never a gain
-    if torque * speed > 0:
-        assert load["recovered_power"] == pytest.approx(efficiency * torque * speed, rel=1e-14)
+    share = efficiency if torque * speed > 0 else 1.0 / efficiency
+    assert load["recovered_power"] == pytest.approx(share * torque * speed, rel=1e-14)
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 4])
