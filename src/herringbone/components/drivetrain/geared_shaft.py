@@ -6,7 +6,7 @@
 
 `ratio` is speed of a over speed of b (both positive in driving direction), `torque` what flange a
 gives; stiffness and damping are those that flange a sees. `factor` is `efficiency` when power flows
-from a to b and 1 / `efficiency` when it flows back, at speeds beyond `smooth_speed`. Through
+from a to b and 1 / `efficiency` when it flows back, at speeds far beyond `smooth_speed`. Through
 standstill, with W = ratio w_b and s = W / sqrt(W^2 + smooth_speed^2), negated where torque < 0,
 
     factor = 1 + s ((e - 1/e) / 2 + s ((e + 1/e) / 2 - 1)),   e: efficiency
