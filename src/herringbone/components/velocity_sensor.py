@@ -13,8 +13,12 @@ d = sqrt(2) at order 2, and 2 sin((2 k - 1) pi / 16), k = 1 ... 4, at order 8. S
 switched off run on unheard, at the corner of the anti-alias filter.
 
 Sample k is taken at first_sample + k / sampling_hz, inside of communication steps too, clipped to
-+-range, rounded to one of 2^bits values (0: not rounded) and held. `saturation_count` is how many
-samples were clipped. A line at f > sampling_hz / 2 shows at |f - n sampling_hz|.
++-range, rounded and held. Rounded values are the 2^bits multiples of d = 2 range / 2^bits from
+-range to range - d; 0 bits: not rounded. `saturation_count` is how many samples were clipped. A
+line at f > sampling_hz / 2 shows at |f - n sampling_hz|.
+
+Before the first sample the output is 0. A sample at the begin of the first step is taken in this
+step, and shown at its end: at first_sample = 0 the output at t = 0 is 0, too.
 
 One sensor feels one direction at one place: connect `velocity` to a velocity of the housing, such
 as `pinion_left.v_z`; take one instance per sensor. Points of the boss face between the seats'

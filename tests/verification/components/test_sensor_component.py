@@ -176,6 +176,17 @@ def test_a_late_start_leaves_out_earlier_samples():
     assert clipped["saturation_count"] == 7
 
 
+def test_a_sample_at_the_start_shows_at_the_end_of_the_first_step():
+    """Until then the output is 0, as it is before any first sample."""
+    for first, expected in ((0.0, [3e-3, 3e-3]), (1e-4, [3e-3, 3e-3]), (1.5e-4, [0.0, 3e-3])):
+        instance = Instance(VELOCITY_SENSOR, "sensor")
+        for name, value in {**BARE, "velocity": 3e-3, "first_sample": first}.items():
+            instance.set(name, value)
+        instance.initialise()
+        assert instance["velocity_sampled"] == 0.0
+        assert follow(instance, lambda _: 3e-3, grid(1e-4, 2e-4)).tolist() == expected
+
+
 def test_times_whose_samples_cannot_be_counted_come_to_an_end():
     """From 2^53 samples on their number has no successor: a step went on for ever."""
     instance = sensor()
@@ -184,7 +195,7 @@ def test_times_whose_samples_cannot_be_counted_come_to_an_end():
 
 
 def test_converter_clips_and_rounds_exactly():
-    """8 bits over +-0.05 m/s: digits -128 ... 127."""
+    """8 bits over +-0.05 m/s: digits -128 ... 127, multiples of 0.1 m/s / 256."""
     rng = np.random.default_rng(1)
     velocity = rng.uniform(-0.08, 0.08, 400)
     instance = sensor(bits=8, high_pass_hz=0.0)
