@@ -20,6 +20,8 @@ from herringbone.plotting.style import (
 )
 
 _LOUDEST = 4
+_STYLES = ("-", "--") * (_LOUDEST // 2)
+"""Of their lines: halves are as loud as each other, and one hides the other unless it has gaps."""
 _FEW = 10
 """Meshes of a period whose multipliers take no second."""
 _WORDS = 2
@@ -28,6 +30,8 @@ _PLACES = 512
 _MESHES = 6
 """Of a long period, so many meshes are drawn at most."""
 _DECADES = 1e-4
+_ROOM = 0.06
+"""Of a panel's height, below the curves for each line of text."""
 _ORDERS = 12.0
 """Mesh orders that are drawn."""
 
@@ -69,10 +73,12 @@ def _signals(axes: Axes, state: PeriodicMotion, group: str) -> None:
     if state.meshes:
         along, axis = turn * state.meshes, "mesh periods"
     labels = short_names(loudest)
-    for label, signal in zip(labels, values, strict=True):
-        axes.plot(along, factor * signal, label=label)
+    for label, signal, style in zip(labels, values, _STYLES, strict=False):
+        axes.plot(along, factor * signal, label=label, linestyle=style)
     more = f", the first {_MESHES} of {state.meshes} mesh periods" if share < 1.0 else ""
     same = coinciding(labels, [(along, signal) for signal in values])
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - _ROOM * len(same) * (high - low), high)
     axes.text(
         0.01, 0.02, "\n".join(same), transform=axes.transAxes, fontsize=7.5,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},

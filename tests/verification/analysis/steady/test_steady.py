@@ -203,6 +203,19 @@ def test_a_state_is_drawn():
     assert "stable" in figure.axes[2 * rows].get_title(loc="left")
 
 
+def test_signals_that_coincide_are_told_beside_the_curves():
+    figure = hb.steady("gearbox", values=STILL, speed=100.0).plot()
+    figure.canvas.draw()
+    told = [
+        (axes, axes.texts[0]) for axes in figure.axes if axes.texts and axes.texts[0].get_text()
+    ]
+    assert told
+    for axes, text in told:
+        lowest = min(float(np.min(line.get_ydata())) for line in axes.lines)
+        assert text.get_window_extent().y1 < axes.transData.transform((0.0, lowest))[1]
+        assert [line.get_linestyle() for line in axes.lines] == ["-", "--"] * 2
+
+
 def test_a_line_through_two_neighbours_leads_on():
     """Its error falls with the square of the way, that of the last one alone with the way."""
     solver, _ = prepared_solver("test_rig", wishes=Wishes(values=STILL), tolerance=1e-6)
