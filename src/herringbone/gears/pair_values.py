@@ -10,7 +10,7 @@ from herringbone.gears.job import GearJob
 
 USUAL_BACKLASH = 0.05
 """Normal backlash over normal module, of pairs that have none by their tooth thickness."""
-_NONE = 1e-9
+_NONE = 1e-7
 """A backlash [m] that is none."""
 _LARGE = 0.1
 """Backlash over module that is more than that of usual gears."""
