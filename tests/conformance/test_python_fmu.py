@@ -90,19 +90,48 @@ def test_script_survives_many_instantiations(python_fmus):
         assert host.values("torque") == [60.0]
 
 
-def test_other_sources_give_a_warning(python_fmus, tmp_path):
-    old = tmp_path / "old.fmu"
-    with zipfile.ZipFile(python_fmus["load_motor"]) as source, zipfile.ZipFile(old, "w") as copy:
+def built_before(fmu, file, before=b"", after=b""):
+    """The FMU of a load motor as other sources had built it, with something else described."""
+    with zipfile.ZipFile(fmu) as source, zipfile.ZipFile(file, "w") as copy:
         module = source.read("resources/slavemodule.txt").decode()
         for entry in source.namelist():
             data = source.read(entry)
             if entry == "resources/slavemodule.txt":
                 data = b"herringbone_load_motor_0123"
+            if entry == "modelDescription.xml":
+                assert before in data
+                data = data.replace(before, after)
             copy.writestr(entry.replace(module, "herringbone_load_motor_0123"), data)
+    return file
+
+
+def test_other_sources_give_a_warning(python_fmus, tmp_path):
+    old = built_before(python_fmus["load_motor"], tmp_path / "old.fmu")
     with Host("part", old) as host:
         host.initialise()
         assert "part: this FMU was built from sources 0123" in host.messages()[0]
         host.step(0.0, H)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [(b'name="inertia"', b'name="moment"'), (b'unit="kg.m2"', b'unit="g.m2"')],
+)
+def test_sources_with_other_variables_are_refused(before, after, python_fmus, tmp_path):
+    """What the host sets would reach others; a state of another FMU does not heal it."""
+    with Host("other", python_fmus["load_motor"]) as host:
+        host.initialise()
+        saved = host.slave.serializeFMUstate(host.slave.getFMUstate())
+    old = built_before(python_fmus["load_motor"], tmp_path / "old.fmu", before, after)
+    said = r"built from sources 0123, .*, whose variables are others; build the FMU again"
+    with Host("part", old) as host, pytest.raises(FmuError, match=said):
+        host.initialise()
+    with Host("part", old) as host:
+        state = host.slave.deSerializeFMUstate(saved)
+        with pytest.raises(FMICallException):
+            host.slave.setFMUstate(state)
+        with pytest.raises(FMICallException):
+            host.slave.doStep(0.0, H)
 
 
 EXIT = """

@@ -23,6 +23,7 @@ from herringbone.fmi.description.fmi2 import model_description
 from herringbone.fmi.python import state
 from herringbone.fmi.python.guarded_slave import GuardedSlave
 from herringbone.fmi.python.state import FmuState
+from herringbone.fmi.python.variables import has_same_variables
 
 _SLACK = 1e-9
 """Relative difference of times that are one: of sums of a million steps."""
@@ -67,18 +68,28 @@ class ComponentSlave(GuardedSlave):
         self._kernel = self._component.kernels.step
         self._read: tuple[list[int], Callable] = ([-1], tuple)
         self._written: list[int] = []
+        self._unfit = ""
         self._check_sources()
 
     def _check_sources(self) -> None:
-        """Warn if the FMU was built from other sources than the package that computes it."""
+        """Look whether the FMU was built from the sources of the package that computes it.
+
+        Other ones are warned of. If their variables differ, too, the host's values would reach
+        others than it means: the instance cannot be initialised then.
+        """
         script = Path(self.resources or "", "slavemodule.txt")
         built = script.read_text().strip().rpartition("_")[2] if script.is_file() else ""
-        if built and built != sources_key():
-            self._say(
-                f"{self.instance_name}: this FMU was built from sources {built}, but the installed "
-                f"package herringbone has {sources_key()}; build the FMU again",
-                Fmi2Status.warning,
-            )
+        if not built or built == sources_key():
+            return
+        told = (
+            f"{self.instance_name}: this FMU was built from sources {built}, but the installed "
+            f"package herringbone has {sources_key()}"
+        )
+        if has_same_variables(script.parents[1], self.to_xml()):
+            self._say(f"{told}; build the FMU again", Fmi2Status.warning)
+        else:
+            self._unfit = f"{told}, whose variables are others; build the FMU again"
+            self._fail(self._unfit)
 
     def to_xml(self, model_options: object = None) -> Element:
         """modelDescription.xml, made from the declaration."""
@@ -266,7 +277,7 @@ class ComponentSlave(GuardedSlave):
         """Restore a state.
 
         Raises:
-            FmuError: it belongs to another component, version or resource.
+            FmuError: it belongs to another component, version or resource, or this FMU does.
         """
         self._failure = ""
         self._attempt(self._restore, saved)
@@ -274,6 +285,8 @@ class ComponentSlave(GuardedSlave):
             self._raise()
 
     def _restore(self, saved: FmuState | None) -> None:
+        if self._unfit:
+            raise FmuError(self._unfit)
         if saved is None or saved.owner != self._owner or len(saved.data) != self._saved.nbytes:
             raise FmuError(
                 f"{self.instance_name}: the FMU state belongs to "
