@@ -19,6 +19,12 @@ static void test_fmi2(void) {
     OK(fmi2SetReal(c, &tau, 1, &(double){2.0}));
     OK(fmi2GetDerivatives(c, dx, 4));
     CHECK(dx[1] == 2.0);
+    fmi2ValueReference inertias = INERTIAS;
+    fmi2String heavy = "heavy.csv", light = "inertias.csv";
+    OK(fmi2SetString(c, &inertias, 1, &heavy)); /* ten times the gain */
+    OK(fmi2GetDerivatives(c, dx, 4));
+    CHECK(fabs(dx[1] - 0.2) < 1e-15);
+    OK(fmi2SetString(c, &inertias, 1, &light));
     REFUSED(fmi2EnterContinuousTimeMode(c), "in initialisation mode");
     OK(fmi2ExitInitializationMode(c));
     REFUSED(fmi2DoStep(c, 0, 1e-3, 1), "doStep in event mode");

@@ -36,6 +36,7 @@ static Status set_text(Instance *instance, uint32_t reference, const char *value
     instance->texts = changed;
     instance->now.tables = 0;
     instance->outdated = instance->now.phase == PHASE_INITIALISATION;
+    instance->rates_outdated = true;
     return STATUS_OK;
 }
 
