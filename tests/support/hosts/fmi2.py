@@ -16,9 +16,12 @@ class Fmi2Host:
         start: start time [s].
         tolerance: that is given; None: not defined.
         values: set in initialisation mode.
+        begun: False: it is left as it was instantiated.
     """
 
-    def __init__(self, fmu: Path, folder: Path, start=0.0, tolerance=None, values=None):
+    def __init__(
+        self, fmu: Path, folder: Path, start=0.0, tolerance=None, values=None, *, begun=True
+    ):
         description = read_model_description(str(fmu))
         self.reference = {v.name: v.valueReference for v in description.modelVariables}
         self.choices = {v.name for v in description.modelVariables if v.type == "Enumeration"}
@@ -34,7 +37,8 @@ class Fmi2Host:
         )
         self._callbacks = callbacks
         self.slave.instantiate(callbacks=callbacks, loggingOn=True)
-        self.initialise(start, tolerance, values)
+        if begun:
+            self.initialise(start, tolerance, values)
 
     def initialise(self, start=0.0, tolerance=None, values=None):
         self.slave.setupExperiment(tolerance=tolerance, startTime=start)

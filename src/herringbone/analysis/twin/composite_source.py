@@ -1,6 +1,7 @@
 """Source of the kernels of a system as one component: the twin's, inside one block.
 
 The component's table part holds the blocks of all parts, one behind the other, as the twin does.
+`refresh` hands them the parameters, and writes what follows from these: no FMU state holds it.
 """
 
 from dataclasses import dataclass
@@ -52,7 +53,7 @@ def refresh(b: np.ndarray) -> None:
     blocks = b[{first}:]
     for i in range({parameters}):
         blocks[PARAMETER_TO[i]] = b[PARAMETER_FROM[i]]
-
+{prepare}
 
 @kernel
 def place(b: np.ndarray, t: float) -> None:
@@ -74,7 +75,7 @@ def system_out(b: np.ndarray, t: float) -> None:
     refresh(b)
     place(b, t)
     scatter(blocks, b[{own}:{states}])
-{prepare}    move(blocks, t)
+    move(blocks, t)
     propagate(blocks, t)
     for i in range({outputs}):
         b[OUTPUT_TO[i]] = blocks[OUTPUT_FROM[i]]

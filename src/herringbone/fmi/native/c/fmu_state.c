@@ -100,6 +100,18 @@ static Status restore_resources(Instance *instance, const FmuState *state) {
                                                         : refuse_resources(instance, state);
 }
 
+static bool has_other_parameters(const Instance *instance, const FmuState *state) {
+    size_t count = hb_component.first_table - hb_component.mutable_size;
+    return memcmp(state->saved + saved_length() - count,
+                  instance->block + hb_component.mutable_size, count * sizeof(double)) != 0;
+}
+
+static void write_back(Instance *instance, const FmuState *state) {
+    memcpy(instance->previous, state->saved, instance_previous_length() * sizeof(double));
+    memcpy(instance->slopes, state->saved + instance_previous_length(),
+           present_length() * sizeof(double));
+}
+
 Status instance_set_state(Instance *instance, void *handle) {
     const FmuState *state = handle;
     if (!find(instance, handle))
@@ -112,14 +124,14 @@ Status instance_set_state(Instance *instance, void *handle) {
         texts_release(instance->texts);
         instance->texts = texts_share(state->texts);
     }
-    size_t length = saved_length();
-    size_t parameters = hb_component.first_table - hb_component.mutable_size;
-    if (memcmp(state->saved + length - parameters, instance->block + hb_component.mutable_size,
-               parameters * sizeof(double)) != 0)
+    bool others = instance->now.phase < PHASE_STEP || has_other_parameters(instance, state);
+    if (others)
         memset(instance->work, 0, hb_component.work * sizeof *instance->work);
-    memcpy(instance->previous, state->saved, instance_previous_length() * sizeof(double));
-    memcpy(instance->slopes, state->saved + instance_previous_length(),
-           present_length() * sizeof(double));
+    write_back(instance, state);
+    if (others && state->moment.phase >= PHASE_STEP) { /* what no state holds follows from these */
+        hb_component.out(instance->block, state->moment.time);
+        write_back(instance, state);
+    }
     if (hb_component.answer && instance->block[hb_component.stale] != 0.0)
         instance->block[hb_component.stale] = 2.0; /* what was asked for is another instance's */
     instance->now = state->moment;
