@@ -4,6 +4,8 @@ A line that lies above half the sampling rate is folded; its complex amplitude a
 is the same on the samples, so that nothing is to be told apart but lines that fold onto each other.
 """
 
+import math
+
 import numpy as np
 import scipy.linalg
 
@@ -25,6 +27,8 @@ _COARSE = 4
 """How many of these are passed over at first."""
 _COINCIDE = 1e-3
 """Added to a line's own product, so that lines that fold onto each other are one."""
+_AT_ONCE = 256
+"""Frequencies of which turning factors are held."""
 
 
 def line_amplitudes(samples: np.ndarray, rate: float, frequencies: np.ndarray) -> np.ndarray:
@@ -36,9 +40,28 @@ def line_amplitudes(samples: np.ndarray, rate: float, frequencies: np.ndarray) -
         frequencies: (k,), also above half the rate [Hz].
     """
     weight = hann_weight(samples.size)
-    off = (samples - weight @ samples) * weight
-    turning = np.exp(-2j * np.pi / rate * np.outer(frequencies, np.arange(samples.size)))
-    return 2.0 * turning @ off
+    return 2.0 * turned_back((samples - weight @ samples) * weight, rate, frequencies)
+
+
+def turned_back(samples: np.ndarray, rate: float, frequencies: np.ndarray) -> np.ndarray:
+    """Sums (k,) of samples (n,), each turned back by its phase at frequencies (k,) [Hz].
+
+    A sample's phase is that of the block in which it lies and that in the block: 2 sqrt(n) factors
+    in place of n.
+    """
+    block = math.isqrt(samples.size) + 1
+    rows = -(-samples.size // block)
+    table = np.zeros(rows * block)
+    table[: samples.size] = samples
+    table = table.reshape(rows, block)
+    found = np.empty(frequencies.size, dtype=complex)
+    for first in range(0, frequencies.size, _AT_ONCE):
+        piece = slice(first, first + _AT_ONCE)
+        rates = -2j * np.pi / rate * frequencies[piece]
+        within = np.exp(np.outer(np.arange(block), rates))
+        begins = np.exp(np.outer(block * np.arange(rows), rates))
+        found[piece] = ((table @ within) * begins).sum(axis=0)
+    return found
 
 
 @one_blas_thread()
@@ -67,7 +90,7 @@ def told_speed(
     step = rate / samples.size / large.max() / _PARTS
     count = int(2.0 * np.log(_SPAN) / step)
     ratios = np.exp(np.linspace(-np.log(_SPAN), np.log(_SPAN), count))
-    met = spectrum.met(np.outer(ratios, large))
+    met = sum(spectrum.logarithms(ratios * f) for f in large) / large.size
     usual = float(np.median(met))
     good = np.flatnonzero(met - usual >= _AS_GOOD * (met.max() - usual))
     places = np.unique(np.clip(good[:, None] + np.arange(-_PARTS, _PARTS + 1), 0, count - 1))
@@ -95,9 +118,9 @@ class _Spectrum:
     def _places(self, frequencies: np.ndarray) -> np.ndarray:
         return np.rint(frequencies * (self._length / self._rate)).astype(int) % self._length
 
-    def met(self, frequencies: np.ndarray) -> np.ndarray:
-        """Mean logarithm of amplitudes, over the median, at frequencies (candidates, k)."""
-        return self._logarithms[self._places(frequencies)].mean(axis=1)
+    def logarithms(self, frequencies: np.ndarray) -> np.ndarray:
+        """Logarithms (k,) of amplitudes, over the median, at frequencies (k,)."""
+        return self._logarithms[self._places(frequencies)]
 
     def left(self, frequencies: np.ndarray) -> float:
         """Share of the energy that lines at frequencies (k,) leave, by least squares."""
