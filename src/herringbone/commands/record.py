@@ -61,14 +61,18 @@ def _json(found: "Beside") -> str:
 
 def _told(found: "Beside") -> Iterator[str]:
     record = found.record
-    yield f"{record.file}, {record.channel}: speed {100.0 * found.speed:.2f} % of the stated one"
+    told = "" if isnan(found.speed) else f": speed {100.0 * found.speed:.2f} % of the stated one"
+    yield f"{record.file}, {record.channel}{told}"
     for fault in found.faults:
         yield f"fault: {fault}"
     if not isnan(found.likeness):
         yield f"gain {found.gain:.4g}, likeness of lines {found.likeness:.3f} (1: the same)"
-    yield "mesh order  frequency [Hz]  shows at [Hz]  predicted [m/s]  measured [m/s]  coherence"
+    yield (
+        "mesh order  frequency [Hz]  shows at [Hz]  alone  predicted [m/s]  measured [m/s]  "
+        "coherence"
+    )
     for row in found.lines.head(_SHOWN).itertuples():
         yield (
-            f"{row.mesh_order:>10.3f}{row.frequency:>16.2f}{row.shows_at:>15.2f}"
+            f"{row.mesh_order:>10.3f}{row.frequency:>16.2f}{row.shows_at:>15.2f}{row.alone:>7.2f}"
             f"{row.predicted:>17.3e}{row.measured:>16.3e}{row.coherence:>11.3f}"
         )

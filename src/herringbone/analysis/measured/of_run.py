@@ -8,7 +8,8 @@ from herringbone.analysis.figures.operating_point import run_mesh_frequency, ste
 from herringbone.analysis.figures.sensing.sensors import sensor_figures
 from herringbone.analysis.figures.sensing.velocity_sensor import sensor_velocity
 from herringbone.analysis.gearboxes import gearbox_of_sensor
-from herringbone.analysis.measured.beside import Beside, Predicted, beside
+from herringbone.analysis.measured.beside import Beside, beside
+from herringbone.analysis.measured.predicted import Predicted
 from herringbone.analysis.measured.record import read_measured
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role

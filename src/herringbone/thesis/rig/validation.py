@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor, sensor_velocity
-from herringbone.analysis.measured.beside import Beside, Predicted, beside
+from herringbone.analysis.measured.beside import Beside, beside
+from herringbone.analysis.measured.predicted import Predicted
 from herringbone.analysis.measured.record import MeasuredRecord
 from herringbone.result.result import TIME
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
@@ -32,6 +33,11 @@ def predicted(grade: int, seed: int = 1) -> Predicted:
     return Predicted(velocity, step, VelocitySensor(), mesh, int(np.lcm(*teeth)))
 
 
+def _samples(one: Predicted) -> np.ndarray:
+    """All that the run gives [m/s]."""
+    return one.samples(int(one.duration * one.sensor.sampling_hz))
+
+
 def compute() -> Outcome:
     """Samples and lines with perfect and with real teeth; other pairs of the same class beside."""
     own = {words: predicted(TEETH[words]) for words in ("perfect", REAL)}
@@ -40,7 +46,7 @@ def compute() -> Outcome:
     samples = table(
         {
             "time": 1e3 * np.arange(_SHOWN) / own[REAL].sensor.sampling_hz,
-            **{words: _MM * one.samples[-_SHOWN:] for words, one in own.items()},
+            **{words: _MM * _samples(one)[-_SHOWN:] for words, one in own.items()},
             **{f"pair {k}": _MM * one.record.velocity[-_SHOWN:] for k, one in enumerate(others, 2)},
         },
         {"time": "ms", "perfect": "mm/s", REAL: "mm/s",
@@ -74,7 +80,7 @@ def compute() -> Outcome:
             Finding(
                 "There is a small discrepancy in amplitude (5.6).",
                 Verdict.CANNOT_BE_TESTED,
-                float(own[REAL].samples.std() / own["perfect"].samples.std()),
+                float(_samples(own[REAL]).std() / _samples(own["perfect"]).std()),
                 "",
                 f"times as large is the level with teeth of {REAL} as with perfect ones",
                 "No number is published.",
@@ -87,7 +93,7 @@ def compute() -> Outcome:
 def _of_pair(own: Predicted, seed: int) -> Beside:
     """Another pair of the class, as if it had been measured."""
     other = predicted(TEETH[REAL], seed)
-    record = MeasuredRecord(other.samples, other.sensor.sampling_hz, "A", f"pair {seed}")
+    record = MeasuredRecord(_samples(other), other.sensor.sampling_hz, "A", f"pair {seed}")
     return beside(record, own)
 
 

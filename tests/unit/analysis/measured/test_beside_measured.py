@@ -2,12 +2,15 @@
 
 import hashlib
 import subprocess
+import tracemalloc
 
 import numpy as np
 import pytest
 
 from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
-from herringbone.analysis.measured.beside import Predicted, beside
+from herringbone.analysis.measured.beside import beside
+from herringbone.analysis.measured.lines import line_amplitudes
+from herringbone.analysis.measured.predicted import Predicted
 from herringbone.analysis.measured.record import MeasuredRecord
 from herringbone.core import ParameterError
 
@@ -137,3 +140,86 @@ def test_coherence_follows_periods_that_are_no_whole_samples():
     found = beside(record(speed=ratio, noise=0.0), Predicted(fine, STEP, _SENSOR, 447.3, MESHES))
     assert found.faults == ()
     assert found.lines.head(10)["coherence"].min() > 0.98
+
+
+ORDERS, SIZES = np.array([81, 162, 243, 324, 405]), 1e-5 * np.array([3.0, 2.8, 7.6, 2.5, 1.5])
+
+
+def few_lines(time, orders=ORDERS, sizes=SIZES):
+    """Mesh harmonics alone, or other orders."""
+    phases = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, orders.size)
+    return np.sin(2.0 * np.pi * MESH / MESHES * np.outer(time, orders) + phases) @ sizes
+
+
+def of_few_lines(**kwargs):
+    fine = np.arange(0.0, 2.0, 1.0 / (25 * RATE))
+    sensor = VelocitySensor(high_pass_hz=0.0, low_pass_hz=0.0, bits=0)
+    return Predicted(few_lines(fine, **kwargs), fine[1], sensor, MESH, MESHES)
+
+
+TIMES = 0.2 + np.arange(3400) / RATE
+FOLDED = {"orders": np.array([162, 243, 117]), "sizes": 1e-5 * np.array([3.0, 7.6, 3.0])}
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.9e-3, 4.13e-3, 13.7e-3])
+def test_lines_that_fold_onto_each_other_are_the_same_after_a_shift(shift):
+    """At 360 times the turn's frequency, 243 and 117 share a place and turn opposite ways."""
+    velocity = few_lines(TIMES + shift, **FOLDED)
+    found = beside(MeasuredRecord(velocity, RATE, "A", "r.csv"), of_few_lines(**FOLDED))
+    assert [one.partition(":")[0] for one in found.faults] == ["time shift"] * (shift > 0.0)
+    assert min(found.shift, 0.02 - found.shift) == pytest.approx(min(shift, 0.02 - shift), abs=1e-6)
+    assert found.gain == pytest.approx(1.0, abs=1e-3)
+    assert found.lines["ratio"].to_numpy() == pytest.approx(1.0, abs=1e-3)
+    alone = found.lines.set_index("order")["alone"]
+    assert alone[243] == pytest.approx(7.6 / 10.6, rel=1e-3)
+    assert alone[162] == pytest.approx(1.0)
+
+
+def test_many_lines_that_fold_are_the_same_after_a_shift():
+    """Sizes drawn: an order has a partner of its size. No sensor, no noise."""
+    orders = np.arange(1, 406)
+    sizes = np.random.default_rng(5).rayleigh(6e-6, 405)
+    sizes[orders % 81 == 0] = SIZES
+    kwargs = {"orders": orders, "sizes": sizes}
+    velocity = few_lines(TIMES + 0.0374, **kwargs)
+    found = beside(MeasuredRecord(velocity, RATE, "A", "r.csv"), of_few_lines(**kwargs))
+    assert found.shift == pytest.approx(0.0374, abs=1e-6)
+    assert found.lines["ratio"].to_numpy() == pytest.approx(1.0, abs=0.01)
+    width = RATE / velocity.size
+    assert found.lines["shows_at"].between(width, 0.5 * RATE - width).all()
+
+
+def test_lines_that_all_show_at_one_place_tell_no_shift():
+    """At 500 Hz of mesh and 2000 Hz, harmonics show at 500 Hz, 1000 Hz or 0 Hz."""
+    fine = np.arange(0.0, 2.0, 2e-5)
+    sensor = VelocitySensor(high_pass_hz=0.0, low_pass_hz=0.0, bits=0)
+    predicted = Predicted(few_lines(fine * 500.0 / MESH), 2e-5, sensor, 500.0, MESHES)
+    record = MeasuredRecord(few_lines((TIMES + 2e-4) * 500.0 / MESH), RATE, "A", "r.csv")
+    with pytest.raises(ParameterError, match="all predicted lines show at 500 Hz when they are"):
+        beside(record, predicted)
+
+
+def test_a_reversed_sign_is_no_time_shift(predicted):
+    own = record()
+    for gain, faults in ((-1.0, ["polarity"]), (-2.0, ["polarity", "gain"])):
+        found = beside(own._replace(velocity=gain * own.velocity), predicted)
+        assert [one.partition(":")[0] for one in found.faults] == faults
+        assert found.gain == pytest.approx(gain, rel=0.02)
+        assert found.likeness > 0.99
+        assert found.lines.head(10)["ratio"].to_numpy() == pytest.approx(-gain, rel=0.05)
+
+
+def test_memory_does_not_grow_with_lines_and_samples():
+    """9625 orders of 40000 samples, as of 25 and 77 teeth: 5.7 GiB if all factors were held."""
+    samples = np.random.default_rng(0).standard_normal(40000)
+    frequencies = np.arange(1, 9626) * 450.0 / 1925
+    tracemalloc.start()
+    found = line_amplitudes(samples, 1e4, frequencies)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 50 * 2**20
+    weight = (1.0 - np.cos(2.0 * np.pi * np.arange(40000) / 40000)) / 40000
+    off = (samples - weight @ samples) * weight
+    for k in (0, 4000, 9624):
+        turned = np.exp(-2j * np.pi * frequencies[k] / 1e4 * np.arange(40000))
+        assert abs(found[k] - 2.0 * turned @ off) < 1e-9 * np.abs(off).sum()

@@ -93,8 +93,12 @@ class VelocitySensor:
         every = self._every(step)
         sampled = self.filtered(velocity, step)[::every]
         saturated = (np.abs(sampled) > self.range).sum(axis=0)
-        digits = np.vectorize(converted, otypes=[float])(sampled, self.range, self.bits)
-        return SensorRecord(np.arange(len(sampled)) * every * step, digits, saturated)
+        times = np.arange(len(sampled)) * every * step
+        return SensorRecord(times, self.recorded(sampled), saturated)
+
+    def recorded(self, sampled: np.ndarray) -> np.ndarray:
+        """What the recorder makes of samples (n,) or (n, k): clipped, in its digits [m/s]."""
+        return np.vectorize(converted, otypes=[float])(sampled, self.range, self.bits)
 
     def filtered(self, velocity: np.ndarray, step: float) -> np.ndarray:
         """A vibration (n,) or (n, k) behind the filters [m/s], every `step` [s]."""
