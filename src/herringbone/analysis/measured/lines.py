@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import scipy.linalg
+import scipy.special
 
 from herringbone.analysis.figures.spectra import hann_weight
 from herringbone.core.process.one_thread import one_blas_thread
@@ -27,6 +28,10 @@ _COARSE = 4
 """How many of these are passed over at first."""
 _COINCIDE = 1e-3
 """Added to a line's own product, so that lines that fold onto each other are one."""
+_ASKED = 32
+"""Speeds that tell what share of a record lines take by chance."""
+_RARE = 1e-3
+"""Records of even noise of which a speed is told."""
 _AT_ONCE = 256
 """Frequencies of which turning factors are held."""
 
@@ -78,6 +83,9 @@ def told_speed(
     harmonic of 77 turns lies where the next one was. Of these speeds it is the one whose lines,
     fitted to the record, leave the least of it (the likeliest one under even noise).
 
+    Returns:
+        The speed; NaN if lines at the best one take no more of the record than of even noise.
+
     Args:
         samples: (n,).
         rate: [Hz].
@@ -100,7 +108,23 @@ def told_speed(
 
     best = int(min(places[::_COARSE], key=left))
     near = range(max(0, best - _COARSE), min(count, best + _COARSE + 1))
-    return float(ratios[min(near, key=left)])
+    best = min(near, key=left)
+    by_chance = 1.0 - float(np.median([left(k) for k in range(0, count, count // _ASKED)]))
+    if 1.0 - left(best) < _most_by_chance(by_chance, samples.size, count):
+        return float("nan")
+    return float(ratios[best])
+
+
+def _most_by_chance(usual: float, samples: int, tries: int) -> float:
+    """Share of the energy of even noise that lines take at the best of many speeds, nearly always.
+
+    Args:
+        usual: share that they take at a speed.
+        samples: of the record.
+        tries: speeds.
+    """
+    free = samples / 3.0  # squares of a Hann window's samples are two thirds as many; by twos
+    return float(scipy.special.betaincinv(free * usual, free * (1.0 - usual), 1.0 - _RARE / tries))
 
 
 class _Spectrum:

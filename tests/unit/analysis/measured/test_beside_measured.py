@@ -9,7 +9,7 @@ import pytest
 
 from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
 from herringbone.analysis.measured.beside import beside
-from herringbone.analysis.measured.lines import line_amplitudes
+from herringbone.analysis.measured.lines import line_amplitudes, told_speed
 from herringbone.analysis.measured.predicted import Predicted
 from herringbone.analysis.measured.record import MeasuredRecord
 from herringbone.core import ParameterError
@@ -119,9 +119,11 @@ def test_another_vibration_is_no_gain(predicted):
     assert not any("gain" in fault for fault in found.faults)
 
 
-def test_noise_is_not_coherent(predicted):
+def test_noise_is_not_coherent_and_has_no_speed(predicted):
     noise = np.random.default_rng(1).standard_normal(2400)
     found = beside(MeasuredRecord(noise, RATE, "A", "noise.csv"), predicted)
+    assert [fault.partition(":")[0] for fault in found.faults] == ["no lines"]
+    assert np.isnan(found.speed)
     assert found.lines["coherence"].mean() < 0.4  # one over six periods is expected
 
 
@@ -207,6 +209,21 @@ def test_a_reversed_sign_is_no_time_shift(predicted):
         assert found.gain == pytest.approx(gain, rel=0.02)
         assert found.likeness > 0.99
         assert found.lines.head(10)["ratio"].to_numpy() == pytest.approx(-gain, rel=0.05)
+
+
+@pytest.mark.parametrize("length", [1200, 3400])
+def test_noise_tells_no_speed_and_lines_under_noise_do(length):
+    """Of even noise, one record in a thousand tells one; lines are found under 1.8 times theirs."""
+    predicted = of_few_lines()
+    clean = few_lines(TIMES[:length])
+    orders, sizes = predicted.lines
+    for seed in range(20):
+        noise = 1.8 * clean.std() * np.random.default_rng(seed).standard_normal(length)
+        told = [
+            told_speed(v, RATE, predicted.turn_hz * orders, sizes) for v in (noise, clean + noise)
+        ]
+        assert np.isnan(told[0]), seed
+        assert told[1] == pytest.approx(1.0, abs=1e-3), seed
 
 
 def test_memory_does_not_grow_with_lines_and_samples():
