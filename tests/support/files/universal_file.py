@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 
-def write_universal(file, values, rate, *, kind=11, unit="mm/s", spacing=1, scale=1e3):
-    """A velocity [m/s] by its samples, as data set 58; `scale` makes its unit of them."""
+def write_universal(file, values, rate, *, kind=11, unit="mm/s", spacing=1, scale=1e3, **more):
+    """A velocity [m/s] by its samples, as data set 58; `scale` makes its unit of them.
+
+    `more`: other fields of the data set.
+    """
     pyuff = pytest.importorskip("pyuff")
     names = ["abscissa", "ordinate", "orddenom", "z_axis"]
     blank = dict.fromkeys(
@@ -23,6 +26,6 @@ def write_universal(file, values, rate, *, kind=11, unit="mm/s", spacing=1, scal
         "rsp_ent_name": "NONE", "ref_ent_name": "NONE", "abscissa_spacing": spacing,
         "ord_data_type": 4, "num_pts": values.size, "abscissa_min": 0.0, "abscissa_inc": 1.0 / rate,
         "z_axis_value": 0.0, "ordinate_spec_data_type": kind, "ordinate_axis_units_lab": unit,
-        "abscissa_spec_data_type": 17,
+        "abscissa_spec_data_type": 17, **more,
     }  # fmt: skip
     pyuff.UFF(str(file)).write_sets(dataset, "add")

@@ -7,6 +7,7 @@ Source: Universal File Formats for Modal Analysis Testing, University of Cincinn
 
 import contextlib
 import io
+import re
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,8 @@ from herringbone.core.errors import HerringboneError, ResourceError
 from herringbone.core.reading.texts import LARGEST_MODEL, read_bytes
 
 _MARK = b"    -1"
+_BINARY = re.compile(rb"^    58[bB].{12}(.{12})(.{12}).*\n", re.MULTILINE)
+"""Second line of a data set 58b."""
 
 
 def universal_sets(path: Path, kinds: Collection[int]) -> list[dict[str, Any]]:
@@ -34,8 +37,13 @@ def universal_sets(path: Path, kinds: Collection[int]) -> list[dict[str, Any]]:
         raise HerringboneError(
             "universal files need pyuff: pip install 'herringbone[import]'"
         ) from error
-    lines = read_bytes(path, LARGEST_MODEL).splitlines()
-    marks = sum(line.rstrip() == _MARK for line in lines)
+    content = read_bytes(path, LARGEST_MODEL)
+    try:
+        marks = sum(line.rstrip() == _MARK for line in _texts(content).splitlines())
+    except ValueError as error:
+        raise ResourceError(
+            f"{path}: the head of a data set 58b is malformed or cut off"
+        ) from error
     if marks == 0:
         raise ResourceError(f"{path} is no universal file: it has no mark '    -1'")
     if marks % 2:
@@ -51,3 +59,20 @@ def universal_sets(path: Path, kinds: Collection[int]) -> list[dict[str, Any]]:
     except Exception as error:  # pyuff raises bare Exception for every defect
         raise ResourceError(f"{path}: data set {n} ({kind}) is malformed") from error
     return found
+
+
+def _texts(content: bytes) -> bytes:
+    """A file without its binary signals (58b), in which a byte may be a line's end or a mark's.
+
+    The second line of such a set tells the lines of text after it, and the bytes after these;
+    ValueError if it does not.
+    """
+    texts, at = [], 0
+    while head := _BINARY.search(content, at):
+        lines, size = (int(field) for field in head.groups())
+        begin = head.end()
+        for _ in range(lines):
+            begin = content.index(b"\n", begin) + 1
+        texts.append(content[at:begin])
+        at = begin + size
+    return b"".join([*texts, content[at:]])
