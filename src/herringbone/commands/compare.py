@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from herringbone.commands import record
 from herringbone.commands.options import check_highest, refuse_given
 from herringbone.commands.output import check_writable, show
+from herringbone.core import ParameterError
 from herringbone.core.places.files import write_whole
 
 if TYPE_CHECKING:
@@ -35,7 +36,12 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--highest", type=float, help="end of the spectra in the picture in Hz; 3000 if not given"
     )
-    sub.add_argument("-o", "--output", type=Path, help=f"folder for {', '.join(FILES)}")
+    sub.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        help=f"folder for {', '.join(FILES)}; of a record for {record.LINES}",
+    )
     sub.add_argument("--json", action="store_true", help="print one JSON object")
     record.add_options(sub)
 
@@ -50,6 +56,8 @@ def run(options: argparse.Namespace) -> int:
     from herringbone.result.folder.typed import as_json  # noqa: PLC0415
 
     check_highest(options.highest)
+    if not options.second.exists():
+        raise ParameterError(f"{options.second} does not exist; B is a results folder or a record")
     if options.output:
         check_writable(options.output)
     if options.second.is_file():

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 OPTIONS = "sensor", "channel", "full_scale"
 """Of a record alone."""
 _SHOWN = 12
-_LINES = "lines.csv"
+LINES = "lines.csv"
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -46,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
     )
     if options.output:
         options.output.mkdir(parents=True, exist_ok=True)
-        write_whole(options.output / _LINES, found.lines.to_csv(index=False))
+        write_whole(options.output / LINES, found.lines.to_csv(index=False))
     show(_json(found) if options.json else "\n".join(_told(found)))
     return 1 if found.faults else 0
 

@@ -114,7 +114,9 @@ def test_what_is_missing_is_one_line(results, tmp_path, capsys):
     (tmp_path / "a.csv").write_text("time,A\n0,1\n")
     assert main(["compare", str(results), str(tmp_path / "a.csv")]) == 2
     assert "the first line must be '# units" in capsys.readouterr().err
-    write(tmp_path / "b.csv", np.zeros(100))
+    assert main(["compare", str(results), str(tmp_path / "none.csv")]) == 2
+    assert "none.csv does not exist; B is a results folder or a record" in capsys.readouterr().err
+    write(tmp_path / "b.csv", np.arange(100.0))
     assert main(["compare", str(results), str(tmp_path / "b.csv"), "--sensor", "Z"]) == 2
     assert "there is no sensor 'Z'; there are: A, B, C" in capsys.readouterr().err
 

@@ -2,9 +2,9 @@
 
 **CSV** has the grammar of all flat files here: `# units: time s, A mm/s`, then `time,A`, then rows;
 columns but `time` are channels, in m/s or mm/s. **WAV** has neither unit nor names: it takes the
-velocity of its largest number; channels are counted from 1. **Universal files** have data set 58
-with real, even data of a velocity; channels are its names (line 1), in the order of the file, and
-their unit is that of the axis label, or the SI unit.
+velocity of its largest number; channels are counted from 1. **Universal files** have data set 58,
+as text or binary, with real, even data of a velocity; channels are its names (line 1), in the order
+of the file. Units are those of the axis labels, or SI units; times are in s or ms.
 """
 
 import io
@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.components.resources.flat_csv import read_flat_csv
+from herringbone.components.resources.flat_csv import fields_of, read_flat_csv
 from herringbone.core import ParameterError, ResourceError
 from herringbone.core.reading.texts import LARGEST_MODEL, read_bytes, read_text
 from herringbone.core.reading.universal import universal_sets
@@ -23,8 +23,10 @@ from herringbone.core.reading.universal import universal_sets
 FEWEST = 64
 """A shorter record tells nothing of lines."""
 _UNITS = {"m/s": 1.0, "mm/s": 1e-3}
-_EVEN = 1e-3
-"""By how much steps of time may differ, over the step."""
+_SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "": 1.0, "NONE": 1.0}
+_EVEN, _COARSE = 1e-3, 0.1
+"""By how much times may differ from a straight line, over the step: if they have many digits, and
+at most by their last one."""
 _TIME = "time"
 _FUNCTION, _VELOCITY, _TIME_RESPONSE = 58, 11, 1
 _CSV, _WAV, _UNIVERSAL = {".csv", ".txt"}, {".wav"}, {".uff", ".unv", ".uf", ".bunv"}
@@ -84,6 +86,10 @@ def read_measured(
         raise ResourceError(f"{file}: {velocity.size} samples; a record takes {FEWEST} or more")
     if not np.isfinite(velocity).all():
         raise ResourceError(f"{file}: {name} has samples that are not finite")
+    if velocity.min() == velocity.max():
+        raise ResourceError(
+            f"{file}: {name} is {velocity[0]:g} m/s throughout; was the sensor connected?"
+        )
     return MeasuredRecord(velocity, rate, name, str(file))
 
 
@@ -101,17 +107,26 @@ def _chosen(path: Path, channels: Mapping[str, np.ndarray], wanted: str) -> str:
 def _of_csv(path: Path) -> _Channels:
     text = read_text(path)
     header = next((line for line in text.split("\n") if line and not line.startswith("#")), "")
-    found = [name.strip() for name in header.split(",")]
+    found = [name.strip() for name in fields_of(header, path)]
     if header and _TIME not in found:
         raise ResourceError(f"{path}: column {_TIME} is missing; it has {', '.join(found)}")
     names = [name for name in found if name != _TIME]
     wanted = {_TIME: ("s",), **{name: tuple(_UNITS) for name in names}}
     columns, units = read_flat_csv(path, (), wanted)
-    steps = np.diff(columns[_TIME])
-    step = float(steps.mean()) if steps.size else 0.0
-    if not step > 0.0 or np.abs(steps - step).max() > _EVEN * step:
+    step = _even_step(columns[_TIME])
+    if step is None:
         raise ResourceError(f"{path}: times must go up in even steps")
     return {name: _UNITS[units[name].strip()] * columns[name] for name in names}, 1.0 / step
+
+
+def _even_step(times: np.ndarray) -> float | None:
+    """Step [s] of times (n,); None if they are not even within the digits in which they stand."""
+    place = np.arange(times.size) - 0.5 * (times.size - 1)
+    step = float(place @ times / max(place @ place, 1.0))
+    digit = next((10.0**-d for d in range(16) if np.array_equal(times.round(d), times)), 0.0)
+    off = np.abs(times - times.mean() - step * place)
+    within = max(_EVEN * step, min(digit, _COARSE * step))
+    return step if step > 0.0 and off.max() <= within else None
 
 
 def _of_wav(path: Path, full_scale: float | None) -> _Channels:
@@ -155,15 +170,24 @@ def _of_universal(path: Path) -> _Channels:
                 continue
             if not item["abscissa_spacing"] or np.iscomplexobj(item["data"]):
                 raise ResourceError(f"{path}: data set {number} is no real signal over even times")
+            if item["data"].size != item["num_pts"]:
+                raise ResourceError(
+                    f"{path}: data set {number} has {item['data'].size} of {item['num_pts']} values"
+                )
             unit = str(item["ordinate_axis_units_lab"]).strip()
             if unit not in {*_UNITS, "", "NONE"}:
                 raise ResourceError(
                     f"{path}: data set {number} is in '{unit}'; it takes {' or '.join(_UNITS)}"
                 )
+            clock = str(item["abscissa_axis_units_lab"]).strip()
+            if clock not in _SECONDS:
+                raise ResourceError(
+                    f"{path}: times of data set {number} are in '{clock}'; it takes s or ms"
+                )
             name = str(item["id1"]).strip()
             name = name if name not in {"", "NONE", *found} else str(number)
             found[name] = _UNITS.get(unit, 1.0) * np.asarray(item["data"], dtype=float)
-            rates.append(1.0 / float(item["abscissa_inc"]))
+            rates.append(1.0 / (_SECONDS[clock] * float(item["abscissa_inc"])))
     except (KeyError, TypeError, ValueError, ZeroDivisionError) as error:
         raise ResourceError(f"{path}: a data set {_FUNCTION} is malformed: {error}") from error
     if rates and max(rates) > min(rates) * (1.0 + _EVEN):

@@ -101,7 +101,7 @@ def _read(
     first, lines = _section(file, section)
     units = _units(lines[0] if lines else "", file)
     rows = [
-        (n, _fields(line, file, n))
+        (n, fields_of(line, file, n))
         for n, line in enumerate(lines, first)
         if line and not line.startswith("#")
     ]
@@ -173,8 +173,12 @@ def _number(text: str, column: str, file: AnyPath, line: int) -> float:
         raise ResourceError(said) from None
 
 
-def _fields(line: str, file: AnyPath, n: int) -> list[str]:
-    """Fields of line n; quotes around one are taken off, and two inside stand for one."""
+def fields_of(line: str, file: AnyPath, n: int = 1) -> list[str]:
+    """Fields of line n; quotes around one are taken off, and two inside stand for one.
+
+    Raises:
+        ResourceError: a quote is not closed.
+    """
     if '"' not in line:
         return line.split(",")
     fields, at = [], 0

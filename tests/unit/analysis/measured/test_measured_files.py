@@ -63,6 +63,10 @@ DEFECTS = {
         (csv_text(TIME[:20], SIGNAL[:20]), "20 samples; a record takes 64 or more"),
         (csv_text().replace("time,A", "t,A"), "column time is missing"),
         (csv_text(values=np.append(SIGNAL[:-1], np.nan)), "not a finite number"),
+        (csv_text(values=0.0 * SIGNAL), "A is 0 m/s throughout; was the sensor connected"),
+        (csv_text(values=0.0 * SIGNAL + 1.0), "A is 1 m/s throughout"),
+        (csv_text(np.delete(TIME, 200), SIGNAL[1:]), "times must go up in even steps"),
+        (csv_text(-TIME), "times must go up in even steps"),
         ("", "the first line must be '# units"),
     ],
     "a.dat": [("x", "'.dat' is no format of records that is known")],
@@ -110,3 +114,43 @@ def test_universal_files_hold_velocities(tmp_path):
     write_universal(tmp_path / "inches.uff", SIGNAL, RATE, unit="in/s")
     with pytest.raises(HerringboneError, match="is in 'in/s'; it takes m/s or mm/s"):
         read_measured(tmp_path / "inches.uff")
+    write_universal(tmp_path / "minutes.uff", SIGNAL, RATE, abscissa_axis_units_lab="min")
+    with pytest.raises(HerringboneError, match="times of data set 1 are in 'min'; it takes s or"):
+        read_measured(tmp_path / "minutes.uff")
+    write_universal(tmp_path / "ms.uff", SIGNAL, RATE / 1e3, abscissa_axis_units_lab="ms")
+    assert read_measured(tmp_path / "ms.uff").sampling_hz == pytest.approx(RATE, rel=1e-6)
+
+
+def test_binary_universal_files_hold_marks_and_line_ends_as_numbers(tmp_path):
+    """A number of the bytes of a mark, and of line feeds before one; the second set is text."""
+    bits = np.frombuffer(b"\n    -1\n" + b"\n" * 8)
+    values = np.concatenate([SIGNAL, bits, SIGNAL])
+    file = tmp_path / "a.uff"
+    write_universal(file, values, RATE, unit="m/s", scale=1.0, binary=1)
+    content = file.read_bytes()
+    with pytest.raises(
+        HerringboneError, match="data set 1 has 400 of 802 values"
+    ):  # pyuff sees a mark
+        read_measured(file)
+    file.unlink()
+    values = np.concatenate([SIGNAL, bits[1:], SIGNAL])
+    write_universal(file, values, RATE, unit="m/s", scale=1.0, binary=1)
+    write_universal(file, SIGNAL, RATE, id1="B")
+    np.testing.assert_array_equal(read_measured(file, "A").velocity, values)
+    np.testing.assert_allclose(read_measured(file, "B").velocity, SIGNAL, rtol=1e-6, atol=1e-9)
+    file.write_bytes(content[: len(content) // 2])
+    with pytest.raises(HerringboneError, match="truncated: the last data set does not end"):
+        read_measured(file)
+    file.write_bytes(content[:200])
+    with pytest.raises(HerringboneError, match="head of a data set 58b is malformed or cut off"):
+        read_measured(file)
+
+
+def test_times_are_even_within_their_digits(tmp_path):
+    """39.0625 us in steps of a microsecond, and quotes around names."""
+    file, rate = tmp_path / "a.csv", 25600.0
+    rows = "\n".join(f"{k / rate:.6f},{v!r}" for k, v in enumerate(SIGNAL.tolist()))
+    file.write_text(f'# units: time s, A m/s\n"time","A"\n{rows}\n')
+    found = read_measured(file)
+    assert found.sampling_hz == pytest.approx(rate, rel=2e-6)  # 400 rows: a digit in 15.6 ms
+    np.testing.assert_array_equal(found.velocity, SIGNAL)
