@@ -56,9 +56,8 @@ def turned_back(samples: np.ndarray, rate: float, frequencies: np.ndarray) -> np
     """
     block = math.isqrt(samples.size) + 1
     rows = -(-samples.size // block)
-    table = np.zeros(rows * block)
-    table[: samples.size] = samples
-    table = table.reshape(rows, block)
+    table = np.zeros((rows, block))
+    table.flat[: samples.size] = samples
     found = np.empty(frequencies.size, dtype=complex)
     for first in range(0, frequencies.size, _AT_ONCE):
         piece = slice(first, first + _AT_ONCE)
