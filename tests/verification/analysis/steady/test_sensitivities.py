@@ -47,6 +47,41 @@ def test_sensitivities_of_long_periods_are_differences():
         assert found.derivative == pytest.approx(expected, rel=1e-3)
 
 
+GEAR = "gearbox.gear_mesh"
+SMOOTH = {f"{GEAR}.symmetry_pinion": 0.0, f"{GEAR}.symmetry_wheel": 0.0}
+ONE_MESH = {
+    **SMOOTH,
+    **{f"diesel.order_{k}.amplitude": 0.0 for k in range(1, 5)},
+    "water.order_1.amplitude": 0.0,
+}
+"""What makes a period of `ship` longer than one mesh, left out."""
+
+
+@pytest.mark.parametrize(
+    ("system", "values", "name", "meshes"),
+    [
+        ("ship", ONE_MESH, "water.nominal_torque", 1),
+        ("ship", ONE_MESH, "diesel.nominal_speed", 1),
+        ("e_axle", SMOOTH, "machine.nominal_speed", 9),
+    ],
+)
+def test_parameters_that_move_the_speed_that_torques_decide_on(system, values, name, meshes):
+    """Resonances that the speed passes make powers of up to 20: second order in 1e-4 is 1e-6."""
+    state = hb.steady(system, values=values, tolerance=1e-7)
+    assert state.meshes == meshes
+    solver = hb.SteadySolver(state.structure.system, tolerance=1e-7)
+    found = {
+        group: sensitivities(state, group, [name])[name]
+        for group in ("bearing_force", "seat_velocity")
+    }
+    value = found["bearing_force"].value
+    sides = [solver.solve(Point(values={name: value * (1.0 + e)}), state) for e in (1e-4, -1e-4)]
+    for group, own in found.items():
+        levels = [side.level(group) for side in sides]
+        expected = (levels[0] - levels[1]) / 2e-4 / state.level(group)
+        assert own.relative == pytest.approx(expected, rel=1e-3)
+
+
 def test_dampings_of_a_housing_have_a_sensitivity(tmp_path):
     """All ratios of its modes together; against states with files of 1 % more and less."""
     state = hb.steady("test_rig", values=STILL, tolerance=1e-6)

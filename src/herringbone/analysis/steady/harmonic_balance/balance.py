@@ -103,11 +103,15 @@ class Balance:
             return self.motion.speed
         return float(self.problem.mean_speed @ channels[:, 0].real)
 
-    def _answered(self, answer: Response, channels: np.ndarray) -> _Answered:
-        """What the linear part does under channels; made anew where these change the speed."""
+    def _answered(self, answer: Response, channels: np.ndarray, *, held: bool = False) -> _Answered:
+        """What the linear part does under channels; made anew where these change the speed.
+
+        Not so if the speed is held.
+        """
         q = answer.coordinates(channels)
         z, speed, angle = answer.seen(q)
-        if self.motion.turn and abs(speed - answer.speed) > _SAME_SPEED * abs(speed):
+        changed = abs(speed - answer.speed) > _SAME_SPEED * abs(speed)
+        if self.motion.turn and changed and not held:
             answer = self._response(speed, answer.orders)
             q = answer.coordinates(channels)
             z, _, angle = answer.seen(q)
@@ -198,17 +202,21 @@ class Balance:
         )  # fmt: skip
 
     def lacking(
-        self, channels: np.ndarray, orders: np.ndarray | None = None
+        self,
+        channels: np.ndarray,
+        orders: np.ndarray | None = None,
+        speed: float | None = None,
     ) -> tuple[Orbit, np.ndarray]:
         """A motion of given channels, and what the laws give at its harmonics and it lacks.
 
         Args:
             channels: (channels, harmonics).
             orders: (harmonics,) of the period; all that the places tell apart if not given.
+            speed: d theta / dt [rad/s] that it is held at; what the channels lead to if not given.
         """
         orders = self._every if orders is None else orders
-        speed = self._first_speed(channels)
-        now = self._answered(self._response(speed, orders), channels)
+        first = self._first_speed(channels) if speed is None else speed
+        now = self._answered(self._response(first, orders), channels, held=speed is not None)
         samples = self.problem.laws(self._arguments(now))
         laws = in_frequency(rest_of(self.problem, samples), orders)
         off = laws - channels[: len(laws)]

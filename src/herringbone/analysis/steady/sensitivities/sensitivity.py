@@ -6,16 +6,19 @@ With the balance F(r, p) = 0, its Jacobian J and a level l(r, p),
 
 so that each parameter costs no more than evaluations at fixed harmonics r. These are differences
 over small steps of the parameter. Of a period of many meshes the adjoint equations are solved as
-Newton's are, see `harmonic_balance.krylov`.
+Newton's are, see `harmonic_balance.krylov`. J holds the speed; where r decides on that, see
+`following_speed`.
 """
 
 from collections.abc import Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.correction import (
+    Bent,
     jacobian,
     packed,
     sloped,
@@ -27,6 +30,7 @@ from herringbone.analysis.steady.outputs import level_of
 from herringbone.analysis.steady.searching.guess import motion_at, several
 from herringbone.analysis.steady.sensitivities.adjoint import adjoint_by_families
 from herringbone.analysis.steady.sensitivities.assumed import Changes, Moved
+from herringbone.analysis.steady.sensitivities.following_speed import following_speed
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure, alternating_rows
 from herringbone.core import ParameterError
@@ -122,14 +126,23 @@ def _adjoint(state: SteadyState, columns: Sequence[str]) -> _Adjoint:
     alternating = values.copy()
     alternating[:, 0] = 0.0
     slope = np.einsum("ck,cuk->uk", alternating, gains.conj()) / (len(columns) * size)
-    if state.meshes > 1:
-        return _Adjoint(size, found.unknown, adjoint_by_families(orbit, found, slope))
-    count = response.orders.size // 2 + 1  # whose tangents the places tell apart
-    matrix = jacobian(response, found, count - 1)
-    solved = np.linalg.solve(matrix.T, _dual(slope[:, :count]))
-    whole = np.zeros_like(slope)
-    whole[:, :count] = _of_dual(solved, count)
+    solved = partial(_solved, state, found)
+    fixed = solved(slope)
+    whole = following_speed(state, rows, found.unknown, fixed, solved)
     return _Adjoint(size, found.unknown, whole)
+
+
+def _solved(state: SteadyState, found: Bent, given: np.ndarray) -> np.ndarray:
+    """The solution (unknowns, harmonics) of the adjoint equations at a speed that is held."""
+    orbit = state.orbit
+    if state.meshes > 1:
+        return adjoint_by_families(orbit, found, given)
+    count = orbit.response.orders.size // 2 + 1  # whose tangents the places tell apart
+    matrix = jacobian(orbit.response, found, count - 1)
+    solved = np.linalg.solve(matrix.T, _dual(given[:, :count]))
+    whole = np.zeros_like(given)
+    whole[:, :count] = _of_dual(solved, count)
+    return whole
 
 
 def _dual(values: np.ndarray) -> np.ndarray:
