@@ -1,12 +1,15 @@
 """What is refused at a point without a steady state, and what is said instead."""
 
 import math
+from pathlib import Path
 
 import pytest
 from support.steady import STILL
 
 import herringbone as hb
 from herringbone.core import ParameterError
+
+PAIR = Path(__file__).parents[4] / "system_models" / "ship" / "ship_pair.toml"
 
 
 def test_an_open_set_point_takes_a_value():
@@ -42,3 +45,12 @@ def test_teeth_at_no_load_are_said_to_drift_apart():
     state = hb.steady("test_rig", values=STILL, torque=0.0, speed=100.0)
     assert not state.found
     assert "nothing holds the teeth together" in state.notes[-1]
+
+
+def test_a_period_of_many_meshes_at_a_slow_speed_is_said_to_be_too_long():
+    """31 and 77 teeth meet again after 2387 meshes; a pinion at 1 rad/s makes 31 in 2 pi s."""
+    told = hb.sweep("test_rig", gear=PAIR, speed=[1.0], torque=[100.0], workers=1).table
+    assert told["outcome"].tolist() == ["not_converged"]
+    assert told["message"][0].startswith(
+        f"its period of 2387 meshes takes {77.0 * 2.0 * math.pi:.4g} s, longer than 100 s"
+    )

@@ -33,8 +33,10 @@ _RAMP = 1.0
 
 _FARTHEST = 2.0
 """Way to a point beyond two neighbours, over the way between them, up to which a line leads on."""
-_SHORTEST, _LONGEST = 1e-7, 100.0
-"""Periods [s] that a march follows."""
+LONGEST = 100.0
+"""Period [s] that a march follows."""
+_SLOWEST, _FASTEST = 1e-6, 1e7
+"""Mesh frequencies [Hz] of what rotates."""
 
 
 class Guess(NamedTuple):
@@ -99,17 +101,18 @@ def several(motion: Motion, times: int) -> Motion:
 
 def standing(structure: Structure, motion: Motion) -> Orbit:
     """Equilibrium at the angle of the start."""
-    return _at_rest(structure.problem, structure.start, motion)
+    return _at_rest(structure.problem, structure.start, motion, structure.meshes)
 
 
-def _at_rest(problem: Problem, start: np.ndarray, motion: Motion) -> Orbit:
+def _at_rest(problem: Problem, start: np.ndarray, motion: Motion, meshes: int) -> Orbit:
     """Equilibrium; where none is found from the start, as of open teeth, one step towards it.
 
     A march may begin there all the same.
     """
     still, mean = Balance(problem, Period(0, 1), motion), np.zeros(1, dtype=int)
     found = still.solve(start, mean, _SAME)
-    return found if found.converged and turns(found) else still.solve(start, mean, np.inf)
+    rotates = found.converged and turns(found, meshes)
+    return found if rotates else still.solve(start, mean, np.inf)
 
 
 def beginnings(structure: Structure, motion: Motion, still: Orbit) -> Iterator[tuple[Orbit, float]]:
@@ -119,8 +122,8 @@ def beginnings(structure: Structure, motion: Motion, still: Orbit) -> Iterator[t
     begin with is no equilibrium.
     """
     yield still, 0.0
-    ideal = _at_rest(structure.ideal, structure.ideal_start, motion)
-    if turns(ideal):
+    ideal = _at_rest(structure.ideal, structure.ideal_start, motion, structure.meshes)
+    if turns(ideal, structure.meshes):
         yield ideal, _RAMP
 
 
@@ -144,7 +147,7 @@ def begun(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> 
     """
     values, meshes = structure.problem.values, structure.meshes
     at_rest = Guess(still.channels[:values], still.response.orders, per_mesh)
-    if meshes == 1 or not turns(still):
+    if meshes == 1 or not turns(still, meshes):
         return at_rest
     places = 1 << int(np.ceil(np.log2(_SLOW * meshes)))  # they meet the mesh at ever new phases
     if (march := _followed(structure, motion, still, 1.0, places, 1.0)) is None:
@@ -158,11 +161,13 @@ def begun(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> 
 def begun_shortly(
     structure: Structure, motion: Motion, still: Orbit, per_mesh: int
 ) -> Guess | None:
-    """The same of a long period, by the lines of a march over few turns; None without turns."""
+    """The same of a long period, by lines of a march over few turns; None if too long."""
     meshes = structure.meshes
     slow = [base for base in structure.bases if base < meshes]
     periods = _TURNS / min(slow, default=1)
-    if meshes < LONG or periods >= 1.0 or not turns(still):
+    if meshes < LONG or periods >= 1.0 or not turns(still, meshes):
+        return None
+    if periods * still.period > LONGEST:
         return None
     lines = lines_between(structure.bases, meshes, 0, 1, meshes)
     kept = _SETTLED * periods
@@ -172,16 +177,21 @@ def begun_shortly(
 
 def settling(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> March | None:
     """The last periods of a march from equilibrium; None if it fails, or of a long period."""
-    if structure.meshes >= LONG or not turns(still):
+    if structure.meshes >= LONG or not turns(still, structure.meshes):
         return None
     places = structure.meshes * per_mesh
     periods = max(_FEWEST, int(np.ceil(SETTLING / still.period)))
     return _followed(structure, motion, still, periods, places, _FEWEST)
 
 
-def turns(still: Orbit) -> bool:
-    """False at speeds that no rotor has, which what was asked for may lead to."""
-    return 1.0 / _LONGEST <= still.response.frequency / (2.0 * np.pi) <= 1.0 / _SHORTEST
+def turns(orbit: Orbit, meshes: int) -> bool:
+    """False at speeds that no rotor has, which what was asked for may lead to.
+
+    Args:
+        orbit: a motion, or the equilibrium.
+        meshes: of its period.
+    """
+    return _SLOWEST <= meshes / orbit.period <= _FASTEST
 
 
 def motion_at(structure: Structure, point: Point) -> Motion:

@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 
+from herringbone.analysis.steady.harmonic_balance.orbit import Orbit
 from herringbone.analysis.steady.marching.march import March
 from herringbone.analysis.steady.marching.repeated import Repeated
 from herringbone.analysis.steady.searching.found import Found
-from herringbone.analysis.steady.searching.guess import LONG, SETTLING
+from herringbone.analysis.steady.searching.guess import LONG, LONGEST, SETTLING, turns
 from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
@@ -29,6 +30,22 @@ def other_flank(structure: Structure, gears: Sequence[str]) -> str:
     return (
         f"{structure.system.name} was prepared for the other flank of {', '.join(gears)}, and its "
         "line of action: prepare it at this point, as 'steady' does"
+    )
+
+
+def not_marched(structure: Structure, still: Orbit) -> str:
+    """Why no march from an equilibrium could come to a motion; empty if one could."""
+    meshes, period = structure.meshes, still.period
+    if not turns(still, meshes):
+        return NO_ROTATION
+    if period <= LONGEST:
+        return ""
+    longer = f"takes {period:.4g} s, longer than {LONGEST:g} s that are marched"
+    if meshes == 1:
+        return f"its period {longer}; take a higher speed"
+    return (
+        f"its period of {meshes} meshes {longer}; set run-outs and deviations to 0, take a higher "
+        "speed, or run it"
     )
 
 

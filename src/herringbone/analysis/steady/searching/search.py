@@ -33,10 +33,10 @@ from herringbone.analysis.steady.searching.guess import (
 from herringbone.analysis.steady.searching.irregular import irregular
 from herringbone.analysis.steady.searching.remarks import (
     GROWS,
-    NO_ROTATION,
     NO_SHOT,
     never_repeats,
     not_exact,
+    not_marched,
     not_repeating,
     told,
     unsettled,
@@ -81,6 +81,11 @@ class Search:
         """Equilibrium; a neighbour often needs none."""
         return standing(self._structure, self._motion)
 
+    @cached_property
+    def _not_marched(self) -> str:
+        """Why there is no march from there; empty if there is."""
+        return not_marched(self._structure, self._still)
+
     def found(self) -> Result:
         """The motion by the cheapest way that comes to one, or as far as it was found."""
         structure = self._structure
@@ -97,8 +102,8 @@ class Search:
             elif structure.meshes >= LONG and _searched(found):
                 break  # that took long, and is no better from elsewhere
         found = found or none_found(self._motion, self._still)
-        if not turns(self._still):
-            return found, (NO_ROTATION,)
+        if self._not_marched:
+            return found, (self._not_marched,)
         march = settling(structure, self._motion, self._still, PLACES)
         if march is not None:
             for times, tried in self._after(march):
@@ -137,7 +142,8 @@ class Search:
             if self._near or not grows:
                 return result
             unstable = unstable or result
-        return unstable or (none_found(self._motion, self._still), (NO_SHOT,))
+        said = self._not_marched or NO_SHOT
+        return unstable or (none_found(self._motion, self._still), (said,))
 
     def _starts(self) -> Iterator[tuple[int, np.ndarray, float]]:
         """Periods after which it may repeat, coordinates, and a period [s], to shoot from."""
@@ -147,7 +153,7 @@ class Search:
             balance = Balance(structure.problem, period, several(self._motion, times))
             orbit = balance.along(guess.values, guess.orders)
             yield times, start_of(orbit), orbit.period / times
-        if not turns(self._still):
+        if self._not_marched:
             return
         places = structure.meshes * PLACES
         settled = SETTLING / self._still.period
@@ -197,7 +203,8 @@ class Search:
         yield from self._near
         if shortly := begun_shortly(structure, motion, self._still, PLACES):
             yield 1, shortly
-        yield 1, begun(structure, motion, self._still, PLACES)
+        if structure.meshes == 1 or not self._not_marched:
+            yield 1, begun(structure, motion, self._still, PLACES)
 
     def _resolved(self, times: int, guess: Guess) -> Found | None:
         """By harmonic balance: over some periods, with the harmonics that the tolerance needs.
@@ -213,7 +220,7 @@ class Search:
                 return None
             balance = Balance(structure.problem, period, motion)
             orbit = balance.solve(start, known, self._tolerance)
-            if not (orbit.converged and turns(orbit)):
+            if not (orbit.converged and turns(orbit, period.meshes)):
                 return none_found(motion, orbit)
             errors = accuracy(structure, period, motion, orbit)
             if errors.worst <= self._tolerance or resolution.finest(period):
