@@ -1,11 +1,13 @@
 """The end of a run, taken apart into harmonics.
 
 The period is that of the mesh; where outputs do not repeat with it, as with run-outs, the time
-after which the same teeth meet; else all of the last quarter, which then stands for a period.
+after which the same teeth meet; of foreign gear pairs, whose teeth nobody knows, the shortest time
+after which the records repeat; else all of the last quarter, which then stands for a period.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,7 +16,9 @@ from herringbone.analysis.asked import of_both_gears, signal
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.settling import ROTATING, settling_groups
 from herringbone.analysis.figures.spectra import hann_weight, mesh_frequency
+from herringbone.analysis.steady.of_runs.repeating import repeating
 from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.wording import percent
 from herringbone.result.result import TIME, Result
 
 if TYPE_CHECKING:
@@ -28,6 +32,7 @@ _ROOM = 1.01
 """Length of the end over that of the periods that it is to hold."""
 _REPEATS = 2
 """Periods at least that show that it is one."""
+NOTHING_IN_DOUBT: Mapping[str, float] = MappingProxyType({})
 
 
 class Ending(NamedTuple):
@@ -42,6 +47,8 @@ class Ending(NamedTuple):
         speed: mean of the first pinion [rad/s]; NaN: not known.
         rest: what does not repeat, over the alternating part of the worst group; NaN: no period was
             found.
+        doubt: by group, what levels and means change by where records count less towards the ends
+            of the last quarter, over the alternating part; empty: a period was found.
         longer: duration of a run that could show a longer period [s]; 0: there is none to be shown.
         notes: lines that the user should read.
     """
@@ -53,6 +60,7 @@ class Ending(NamedTuple):
     turns: float
     speed: float
     rest: float
+    doubt: Mapping[str, float] = NOTHING_IN_DOUBT
     longer: float = 0.0
     notes: tuple[str, ...] = ()
 
@@ -76,12 +84,13 @@ def ending_of(run: Result, tolerance: float) -> Ending:
         )
     speed = _speed(run, rows)
     own = time[rows]
-    values = CubicSpline(own, run.data[run.signals].to_numpy(float)[rows])
-    groups = _places(run)
+    records = run.data[run.signals].to_numpy(float)[rows]
+    values, groups = CubicSpline(own, records), _places(run)
     length = float(own[-1] - own[0])
     per_turn = abs(speed) / (2.0 * math.pi)
     longer, unit = 0.0, (0, length)
-    for meshes, period in _periods(run, speed):
+    known = list(_periods(run, speed)) or _of_records(run, records, own, tolerance)
+    for meshes, period in known:
         whole = math.floor(length / period)
         if meshes == 1 and whole:
             unit = whole, whole * period
@@ -90,14 +99,18 @@ def ending_of(run: Result, tolerance: float) -> Ending:
             continue
         found, slopes = _harmonics(run, values, own, whole * period)
         kept = found[:, ::whole]
-        rest = _rest(found, kept, groups)
+        rest = _rest(found, kept, list(groups.values()))
         if rest <= tolerance:
             return Ending(kept, slopes, period, meshes, period * per_turn, speed, rest)
     meshes, period = unit
     found, slopes = _harmonics(run, values, own, period)
-    line = f"no period was found: harmonics are those of the last {period:.4g} s of the run"
+    doubt = {name: _doubt(records[:, columns]) for name, columns in groups.items()}
+    line = (
+        f"no period was found: harmonics are those of the last {period:.4g} s of the run, and "
+        f"change by {percent(max(doubt.values(), default=0.0))} with the part of it that counts"
+    )
     turns = period * per_turn
-    return Ending(found, slopes, period, meshes, turns, speed, math.nan, longer, (line,))
+    return Ending(found, slopes, period, meshes, turns, speed, math.nan, doubt, longer, (line,))
 
 
 def _speed(run: Result, rows: np.ndarray) -> float:
@@ -116,6 +129,26 @@ def _periods(run: Result, speed: float) -> Iterator[tuple[int, float]]:
     mesh = 1.0 / mesh_frequency(speed, teeth[0])
     for meshes in (1, math.lcm(*(round(z) for z in teeth))):
         yield meshes, meshes * mesh
+
+
+def _of_records(
+    run: Result, records: np.ndarray, time: np.ndarray, tolerance: float
+) -> list[tuple[int, float]]:
+    """The same where no teeth are known; meshes are 0."""
+    if not steady_part(run).steady:
+        return []
+    return [(0, t) for t in repeating(records, time, list(_places(run).values()), tolerance)]
+
+
+def _doubt(records: np.ndarray) -> float:
+    """What level and mean of records (times, n) change by under a Hann window, over the level."""
+    weight = hann_weight(len(records))
+    mean, inside = records.mean(axis=0), weight @ records
+    size = math.sqrt(records.var(axis=0).sum())
+    weighed = math.sqrt((weight @ np.square(records - inside)).sum())
+    if size == 0.0:
+        return 0.0
+    return max(abs(weighed - size), float(np.linalg.norm(inside - mean))) / size
 
 
 def _harmonics(
@@ -140,10 +173,10 @@ def _harmonics(
     return (np.fft.rfft(samples, axis=0) / count).T[:, : count // 2], slopes
 
 
-def _places(run: Result) -> list[list[int]]:
+def _places(run: Result) -> dict[str, list[int]]:
     """Numbers of the columns of each group."""
     place = {name: k for k, name in enumerate(run.signals)}
-    return [[place[c] for c in columns] for columns in settling_groups(run).values()]
+    return {name: [place[c] for c in columns] for name, columns in settling_groups(run).items()}
 
 
 def _rest(found: np.ndarray, kept: np.ndarray, groups: Sequence[Sequence[int]]) -> float:

@@ -53,13 +53,14 @@ class SettledState(PeriodicMotion):
 
     @property
     def converged(self) -> bool:
-        """True if the run has settled."""
+        """True if the run has settled, to figures that are known to the tolerance."""
         return bool(self.changes) and self.error <= self.tolerance
 
     @property
     def error(self) -> float:
-        """The largest change; infinite if the run does not tell."""
-        return max(self.changes.values(), default=math.inf)
+        """The largest change, or doubt without a period; infinite if the run does not tell."""
+        change = max(self.changes.values(), default=math.inf)
+        return max([change, *self.ending.doubt.values()])
 
     @property
     def stable(self) -> bool:
@@ -86,9 +87,9 @@ class SettledState(PeriodicMotion):
         if not self.changes:
             moving = moving_speed(self._even) or "too little was recorded"
             return [f"unsettled after {outcome.time:g} s: {moving}"]
-        if self.converged:
-            return []
         group, change = max(self.changes.items(), key=lambda item: item[1])
+        if change <= self.tolerance:
+            return []  # what is in doubt then, its ending tells
         return [
             f"unsettled: {group.replace('_', ' ')} still changes by {percent(change)} of its "
             f"alternating part from the third to the last quarter of {outcome.time:g} s (asked "
