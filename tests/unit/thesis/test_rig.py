@@ -36,7 +36,7 @@ def test_harmonics_fold():
     ratio = filtered["amplitude"][2] / plain["amplitude"][2]
     assert ratio == pytest.approx(expected, rel=0.05)
     found = finding("aliasing", "2000 Hz")
-    assert found.number == pytest.approx(4.29, abs=0.05)
+    assert found.number == pytest.approx(3.92, abs=0.04)  # either line is at most 1 % low
     assert found.number > 1.0
 
 
