@@ -107,7 +107,7 @@ class Model:
     Attributes:
         hold: states that keep their start values.
         one_way: parts that are driven but not felt.
-        error: of what was asked, certified; None: unknown.
+        error: the largest of all that was asked, certified; None: unknown.
         speed, torque: where that was certified.
         frozen: parts whose laws are straight lines about their mean deflections.
         linear: parts whose laws have mean slopes besides.

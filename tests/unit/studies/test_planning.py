@@ -14,7 +14,7 @@ from herringbone.analysis.twin.condensed.lean import WHOLE
 from herringbone.core import ParameterError
 from herringbone.core.places.paths import component_folder
 from herringbone.plotting.studies.plan_chart import plan_chart
-from herringbone.running.operating.lean import lean_of
+from herringbone.running.operating.lean import certified_row, lean_notes, lean_of
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Ask, Model, Motion, Operating, Scene, read_scene
@@ -124,6 +124,26 @@ def test_what_is_written_runs_and_states_its_error(tmp_path):
     assert any("model error" in note and "bearing force" in note for note in beyond.notes)
     with pytest.raises(ParameterError, match="with fuse"):
         hb.run("test_rig", scene=file, t_end=1e-3)
+
+
+def test_of_several_questions_the_largest_error_is_stated():
+    """A question that may err much errs more than the one that decides on the choice."""
+    asks = (Ask(("torque",), tolerance=0.01), Ask(("seat velocity",), tolerance=0.5))
+    speed = 1000.0 * _R_MIN
+    scene = Scene("two", values=_STILL, asks=asks, operating=Operating(speed=(speed, speed)))
+    found = plan("test_rig", scene=scene, for_fmu=True)
+    whole, _ = prepared_solver("test_rig", wishes=Wishes(values=_STILL), tolerance=1e-5)
+    lean, point = whole.leaner(lean_of(found.scene)), hb.Point(speed=speed)
+    states = lean.solve(point), whole.solve(point)
+    truth = [apart(q, *(lines_of(state, q) for state in states)).error for q in found.questions]
+    assert max(truth) > 1.5 * found.choice.measured.error
+    # both are compared at 1e-5, a hundredth of either error
+    assert found.scene.model.error == pytest.approx(max(truth), rel=0.01)
+    (note,) = lean_notes(found.scene.model, {}, speed)
+    assert f"at most {100.0 * max(truth):.2g} % of what the scene asks" in note
+    row = certified_row(found.scene.model)
+    assert row.value == pytest.approx(max(truth), rel=0.01)
+    assert f"of all questions: at most {100.0 * max(truth):.2g} %" in "\n".join(plan_text(found))
 
 
 def test_a_housing_driven_one_way_by_hand_is_warned_of_with_its_error():

@@ -78,7 +78,7 @@ def lean_notes(
     said = f"leaner model: {', '.join(parts)}; its error "
     if model.error is None:
         return (f"{said}is not certified: 'herringbone plan' does that",)
-    where = f"{percent(model.error)} of what the scene asks{_where(model)}"
+    where = f"at most {percent(model.error)} of what the scene asks{_where(model)}"
     if changed:
         names = ", ".join(sorted(changed))
         return (f"{said}was {where}, but is not known with other values of {names}",)
@@ -111,7 +111,7 @@ def certified_row(model: Model) -> BudgetRow | None:
     """What a plan certified of a leaner model, for the error budget; None of a whole one."""
     if not model:
         return None
-    how = f"steady states{_where(model)}"
+    how = f"the largest of all questions, steady states{_where(model)}"
     return BudgetRow(SOURCE, "what the scene asks", model.error, Known.MEASURED, how)
 
 

@@ -174,7 +174,7 @@ def _made(
 ) -> Plan:
     choice = next(rung for rung in rungs if not rung.why)
     at = scene.operating
-    error = None if choice.measured is None else choice.measured.error
+    error = None if choice.measured is None else choice.measured.largest
     model = Model()
     if choice.lean:
         lean = choice.lean

@@ -1,6 +1,6 @@
 """A rung of a ladder: a model with a solver, its error and its cost."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -23,6 +23,7 @@ class Worst(NamedTuple):
         worst: the output that errs most over its own size.
         worst_error: of that one.
         point: where.
+        largest: error of any question at any point, whatever its tolerance.
     """
 
     error: float
@@ -30,6 +31,7 @@ class Worst(NamedTuple):
     worst: str
     worst_error: float
     point: Point
+    largest: float
 
     @property
     def ratio(self) -> float:
@@ -42,12 +44,18 @@ def worst(
 ) -> Worst:
     """The worst of all questions at all points, at least one."""
     every = [
-        Worst(own.error, question, own.worst, own.worst_error, point)
+        Worst(own.error, question, own.worst, own.worst_error, point, own.error)
         for point, by_name in found
         for question in questions
         if (own := by_name[question.name])
     ]
-    return max(every, key=lambda each: each.ratio)
+    return worst_of_all(every)
+
+
+def worst_of_all(every: Sequence[Worst]) -> Worst:
+    """The one that is largest over its tolerance, with the largest error of all."""
+    largest = max(each.error for each in every)
+    return max(every, key=lambda each: each.ratio)._replace(largest=largest)
 
 
 @dataclass(frozen=True)

@@ -53,6 +53,8 @@ def _said(plan: Plan) -> Iterator[str]:
             f"  certified: {percent(at.error)} of the {at.question.name}{_where(at)}, worst "
             f"output {at.worst}: {percent(at.worst_error)}"
         )
+        if at.largest > at.error:
+            yield f"  certified of all questions: at most {percent(at.largest)}"
     if choice.lean:
         lean = choice.lean
         tables = (f"{part}: harmonics above {count}" for part, count in lean.harmonics)
@@ -154,6 +156,7 @@ def _figures(found: Worst | None) -> dict | None:
         return None
     return {
         "error": found.error,
+        "largest": found.largest,
         "question": found.question.name,
         "worst": found.worst,
         "worst_error": found.worst_error,

@@ -17,7 +17,7 @@ from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST, SHORTEST
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.scenes import Scene
 from herringbone.studies.planning.marching import Marched, marched
-from herringbone.studies.planning.rung import FUSED, Rung, Worst
+from herringbone.studies.planning.rung import FUSED, Rung, Worst, worst_of_all
 
 TURN = 0.06
 """Time over which means are taken out of what varies [s]: a turn at 1000 r/min."""
@@ -94,8 +94,9 @@ def worst_of(
         single = np.where(size > 0.0, off / np.where(size > 0.0, size, 1.0), 0.0)
         k = int(single.argmax())
         error = float(np.linalg.norm(off)) / whole if whole else 0.0
-        found.append(Worst(error, question, question.outputs[k], float(single[k]), Point()))
-    return max(found, key=lambda each: each.ratio)
+        own_worst = question.outputs[k], float(single[k])
+        found.append(Worst(error, question, *own_worst, Point(), error))
+    return worst_of_all(found)
 
 
 def _rows(question: Question, march: Marched, columns: Sequence[int]) -> np.ndarray:
