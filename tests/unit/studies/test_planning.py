@@ -5,11 +5,12 @@ import math
 import re
 from functools import cache
 
+import numpy as np
 import pytest
 
 import herringbone as hb
 from herringbone.analysis.leaner.form import Form
-from herringbone.analysis.leaner.question import apart, lines_of
+from herringbone.analysis.leaner.question import Question, apart, lines_of
 from herringbone.analysis.twin.condensed.lean import WHOLE
 from herringbone.core import ParameterError
 from herringbone.core.places.paths import component_folder
@@ -20,10 +21,12 @@ from herringbone.running.prepared import Wishes
 from herringbone.scenes import Ask, Model, Motion, Operating, Scene, read_scene
 from herringbone.scenes.scene_text import scene_text
 from herringbone.studies.planning.certified import Certifier
+from herringbone.studies.planning.marching import Marched
 from herringbone.studies.planning.plan import Plan, plan
 from herringbone.studies.planning.points import points_to_probe, points_to_test
 from herringbone.studies.planning.rung import FUSED, SHARE, STEADY
 from herringbone.studies.planning.text import estimates_text, plan_summary, plan_text, write_plan
+from herringbone.studies.planning.transient_plan import worst_of
 
 _R_MIN = math.pi / 30.0
 _STILL = {"gear_mesh.symmetry_deviation": 0.0}
@@ -210,6 +213,13 @@ def test_a_transient_is_answered_by_steps_that_half_of_them_confirm():
     assert found.choice.whole
 
 
+def test_what_does_not_vary_in_a_run_is_refused():
+    question = Question("signal of torque", ("torque",), Form.SIGNAL, 0.01)
+    still = Marched(np.arange(9.0), np.ones((9, 1)), 0.0)
+    with pytest.raises(ParameterError, match="ask: signal of torque: it does not vary"):
+        worst_of([question], ["torque"], still, still)
+
+
 def test_files_among_the_values_are_found_from_wherever_the_plan_is(tmp_path, monkeypatch):
     table = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"
     (tmp_path / "mine.csv").write_bytes(table.read_bytes())
@@ -232,6 +242,16 @@ def test_files_among_the_values_are_found_from_wherever_the_plan_is(tmp_path, mo
         (
             _scene(Ask(("torque",)), operating=Operating(Motion.TRANSIENT)),
             "ask: spectrum of torque: a transient has no period",
+        ),
+        (
+            _scene(Ask(("bearing force",), Form.ORDER, orders=(1.0, 0.037))),
+            "ask: order 1, 0.037 of bearing force: there is no line of order 0.037; the period is "
+            "one mesh, orders are 1, 2, ... ",
+        ),
+        (  # 27 teeth at 1000 r/min
+            _scene(Ask(("bearing force",), band=100.0)),
+            "ask: spectrum of bearing force to 100 Hz: there is no line in the band; the first one "
+            "is at 450 Hz",
         ),
     ],
 )

@@ -108,6 +108,36 @@ def apart(question: Question, ours: Lines, theirs: Lines) -> Apart:
     return Apart(error, question.outputs[worst], float(single[worst]))
 
 
+def nothing_asked(question: Question, lines: Lines) -> str:
+    """Why an answer has no line of what is asked for; "" if it has."""
+    if question.form is Form.ORDER:
+        mesh = np.array(question.orders) * lines.meshes
+        whole = np.isclose(mesh, np.maximum(np.rint(mesh), 1.0), rtol=_SAME, atol=0.0)
+        if not whole.all():
+            order = question.orders[int(whole.argmin())]
+            return f"there is no line of order {order:g}; {_told_orders(lines)}"
+    if np.any(_asked(question, lines.coefficients, lines.orders, lines)):
+        return ""
+    (moving,) = np.nonzero(lines.coefficients[:, 1:].any(axis=0))
+    if not moving.size:
+        return "it does not vary"
+    if question.form is Form.ORDER:
+        return f"there is no such line; {_told_orders(lines)}"
+    first = lines.orders[1 + moving[0]] * lines.frequency
+    return f"there is no line in the band; the first one is at {first:.5g} Hz"
+
+
+def _told_orders(lines: Lines) -> str:
+    """Mesh orders that a motion has, for people."""
+    highest = f"{lines.orders[-1] / lines.meshes:.5g}"
+    if lines.meshes == 1:
+        return f"the period is one mesh, orders are 1, 2, ... {highest}"
+    return (
+        f"the period is {lines.meshes} meshes, orders are multiples of 1/{lines.meshes} "
+        f"up to {highest}"
+    )
+
+
 def _asked(
     question: Question, coefficients: np.ndarray, orders: np.ndarray, lines: Lines
 ) -> np.ndarray:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from herringbone.analysis.leaner.question import Apart, Question, apart, lines_of
+from herringbone.analysis.leaner.question import Apart, Question, apart, lines_of, nothing_asked
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
@@ -45,7 +45,8 @@ class Certifier:
         fine, tolerance: with which models are compared, and with which questions are answered.
 
     Raises:
-        ParameterError: the whole model has no steady state at a point.
+        ParameterError: the whole model has no steady state at a point, or at no point a line that
+            is asked for.
     """
 
     def __init__(
@@ -70,7 +71,15 @@ class Certifier:
             {question.name: lines_of(state, question) for question in questions}
             for state in self.states
         ]
+        self._refuse_nothing()
         self._tighten(share)
+
+    def _refuse_nothing(self) -> None:
+        """Refuse what has no line at any point, which every model would answer without error."""
+        for question in self.questions:
+            why = [nothing_asked(question, lines[question.name]) for lines in self.lines]
+            if all(why):
+                raise ParameterError(f"ask: {question.name}: {why[0]}")
 
     def _tighten(self, share: float) -> None:
         """Lower the solver's tolerance, which is of groups of channels, until questions meet it."""

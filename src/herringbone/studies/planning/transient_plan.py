@@ -81,6 +81,9 @@ def worst_of(
         questions: what is asked.
         columns: of both marches.
         ours, theirs: at the same times; theirs is the better one.
+
+    Raises:
+        ParameterError: nothing of a question varies.
     """
     place = {name: k for k, name in enumerate(columns)}
     window = round(TURN / (theirs.times[1] - theirs.times[0]))
@@ -93,7 +96,9 @@ def worst_of(
         whole = float(np.linalg.norm(size))
         single = np.where(size > 0.0, off / np.where(size > 0.0, size, 1.0), 0.0)
         k = int(single.argmax())
-        error = float(np.linalg.norm(off)) / whole if whole else 0.0
+        if not whole:
+            raise ParameterError(f"ask: {question.name}: it does not vary in this run")
+        error = float(np.linalg.norm(off)) / whole
         own_worst = question.outputs[k], float(single[k])
         found.append(Worst(error, question, *own_worst, Point(), error))
     return worst_of_all(found)
