@@ -34,11 +34,12 @@ from herringbone.running.operating.questions import questions_of
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Ask, Operating, Scene
+from herringbone.scenes.asking import SHARE
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.estimated import Ladder
 from herringbone.studies.planning.plan import plan
 from herringbone.studies.planning.points import first_point, points_to_probe
-from herringbone.studies.planning.rung import SHARE, STEADY
+from herringbone.studies.planning.rung import STEADY
 
 _R_MIN = math.pi / 30.0
 _LEAST, _LARGE = 1e-4, 0.3

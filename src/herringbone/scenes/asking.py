@@ -8,6 +8,8 @@ from herringbone.analysis.leaner.form import Form
 from herringbone.core import ParameterError
 from herringbone.scenes.checks import chosen
 
+SHARE = 0.5
+"""Of a tolerance, for what the model leaves out, and as much for the solver."""
 Range = tuple[float, float]
 """Lowest and highest value."""
 
@@ -85,11 +87,13 @@ class Operating:
         motion: what kind of; a text becomes the choice that it names.
         speed: set point that the system declares, at its own shaft [rad/s].
         torque: the same [N m].
+        solver_tolerance: for steady states, which a plan found; None: follows from what is asked.
     """
 
     motion: Motion = Motion.STEADY
     speed: Range | None = None
     torque: Range | None = None
+    solver_tolerance: float | None = None
 
     def __post_init__(self) -> None:
         """Take a text for the motion.

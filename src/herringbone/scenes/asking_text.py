@@ -56,7 +56,7 @@ def _ask(data: Any) -> Ask:  # noqa: ANN401 (anything from TOML)
 
 
 def _operating(data: Any) -> Operating:  # noqa: ANN401
-    _known(data, "operating", {"motion", "speed", "torque"})
+    _known(data, "operating", {"motion", "speed", "torque", "solver_tolerance"})
     motion = chosen(Motion, data.get("motion", Motion.STEADY), "operating: motion")
     speed, torque = _range(data, "operating", "speed"), _range(data, "operating", "torque")
     if speed is not None:
@@ -65,7 +65,9 @@ def _operating(data: Any) -> Operating:  # noqa: ANN401
         raise ParameterError(
             "operating: speed, torque: a transient has those of its cycle; set what commands them"
         )
-    return Operating(motion, speed, torque)
+    key = "solver_tolerance"
+    tolerance = _number(data[key], f"operating: {key}") if key in data else None
+    return Operating(motion, speed, torque, tolerance)
 
 
 def _model(data: Any) -> Model:  # noqa: ANN401
@@ -135,6 +137,8 @@ def asking_text(asks: tuple[Ask, ...], operating: Operating, model: Model) -> It
     """Lines of a scene, as `read_asking` takes them."""
     ends = {"speed": operating.speed, "torque": operating.torque}
     yield from ("", "[operating]", f'motion = "{operating.motion}"', *_ranges(ends))
+    if operating.solver_tolerance is not None:
+        yield f"solver_tolerance = {operating.solver_tolerance:.6g}"
     for ask in asks:
         yield from ("", "[[ask]]", f"what = {_listed(ask.what)}", f'as = "{ask.form}"')
         yield f"tolerance = {ask.tolerance:g}"

@@ -15,6 +15,7 @@ from herringbone.core.wording import speaks_commands
 from herringbone.cosim.structure.system import System
 from herringbone.running.fitted import with_files
 from herringbone.running.loading import load_scene, load_system, with_options
+from herringbone.running.operating.asked_tolerance import tolerance_notes
 from herringbone.running.operating.commanded import commanded, own_point, with_known_values
 from herringbone.running.operating.lean import changed_by
 from herringbone.running.output.settings import key_of
@@ -108,6 +109,10 @@ def sweep(
     chosen_scene = load_scene(folder, named)
     known = with_known_values(structure, chosen_scene, wishes)
     chosen = evaluator or _suited(known, wishes)
+    said: tuple[str, ...] = ()
+    if isinstance(chosen, Steady):
+        said = tolerance_notes(chosen_scene, chosen.tolerance)
+        chosen = chosen.as_fine_as_asked(chosen_scene)
     check_columns(known, chosen.columns)
     _check_wishes(wishes, chosen, series=series)
     _check_once(known, study.names, wishes.values)
@@ -118,7 +123,7 @@ def sweep(
     own = with_options(chosen_scene, values=wishes.values)
     files = with_files(structure, own, wishes, folder)
     leaner = leaner_notes(chosen_scene.model, study, changed_by(wishes), own_point(known))
-    for line in (*files.notes, *files.of_fmus, *leaner):
+    for line in (*files.notes, *files.of_fmus, *said, *leaner):
         told(line)
     settings = base_settings(base, chosen)
     asked = Asked(

@@ -14,6 +14,7 @@ _ALL = """
 [operating]
 speed = [500, 3000]
 torque = 200
+solver_tolerance = 2e-6
 [[ask]]
 what = "seat velocity"
 band = 2000
@@ -40,7 +41,7 @@ def _read(folder, text):
 def test_all_that_can_be_asked(tmp_path):
     found = _read(tmp_path, _ALL)
     assert found.operating == Operating(
-        Motion.STEADY, (500.0 / _R_MIN, 3000.0 / _R_MIN), (200.0, 200.0)
+        Motion.STEADY, (500.0 / _R_MIN, 3000.0 / _R_MIN), (200.0, 200.0), 2e-6
     )
     assert found.asks == (
         Ask(("seat velocity",), Form.SPECTRUM, 0.01, 2000.0),
@@ -55,6 +56,7 @@ def test_what_is_written_is_read_again(tmp_path):
     found = _read(tmp_path, _ALL)
     again = _read(tmp_path, "\n".join(asking_text(found.asks, found.operating, found.model)))
     assert (again.asks, again.model) == (found.asks, found.model)
+    assert again.operating.solver_tolerance == found.operating.solver_tolerance
     assert again.operating.speed == pytest.approx(found.operating.speed, rel=1e-15)
 
 

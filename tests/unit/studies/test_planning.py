@@ -15,16 +15,18 @@ from herringbone.analysis.twin.condensed.lean import WHOLE
 from herringbone.core import ParameterError
 from herringbone.core.places.paths import component_folder
 from herringbone.plotting.studies.plan_chart import plan_chart
+from herringbone.running.operating.asked_tolerance import asked_tolerance, tolerance_notes
 from herringbone.running.operating.lean import certified_row, lean_notes, lean_of
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Ask, Model, Motion, Operating, Scene, read_scene
+from herringbone.scenes.asking import SHARE
 from herringbone.scenes.scene_text import scene_text
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.marching import Marched
 from herringbone.studies.planning.plan import Plan, plan
 from herringbone.studies.planning.points import points_to_probe, points_to_test
-from herringbone.studies.planning.rung import FUSED, SHARE, STEADY
+from herringbone.studies.planning.rung import FUSED, STEADY
 from herringbone.studies.planning.text import estimates_text, plan_summary, plan_text, write_plan
 from herringbone.studies.planning.transient_plan import worst_of
 
@@ -181,6 +183,44 @@ def test_of_what_is_in_no_group_of_channels_the_solver_is_as_fine_as_is_asked():
     (question,) = found.questions
     ours, theirs = (lines_of(each.solve(point), question) for each in (own, fine))
     assert apart(question, ours, theirs).error <= question.tolerance
+
+
+def test_what_a_plan_wrote_is_solved_as_finely_as_it_asks(tmp_path):
+    """Without a tolerance given, at which steady states err 6.5e-4 for 1e-5 that were asked."""
+    speed = 950.0 * _R_MIN
+    ask = Ask(("bearing force",), tolerance=1e-5)
+    found = plan("test_rig", scene=_scene(ask, operating=Operating(speed=(speed, speed))))
+    assert found.tolerance <= SHARE * 1e-5
+    file = write_plan(found, tmp_path / "plan")[0]
+    assert read_scene(file).operating.solver_tolerance == pytest.approx(found.tolerance, rel=1e-5)
+    point, (question,) = hb.Point(speed=speed), found.questions
+    state = hb.steady("test_rig", scene=file, speed=speed)
+    assert any(f"tolerance of {found.tolerance:.2g}, as planned" in note for note in state.notes)
+    fine, _ = prepared_solver("test_rig", found.scene, point, tolerance=1e-7)
+    truth = fine.leaner(WHOLE).solve(point)
+    assert apart(question, lines_of(state, question), lines_of(truth, question)).error <= 1e-5
+    told: list[str] = []
+    table = hb.sweep("test_rig", speed=[speed], scene=file, workers=1, told=told.append).table
+    assert table["error"][0] <= 5e-6
+    assert any("as planned" in line for line in told)
+
+
+@pytest.mark.parametrize(
+    ("ask", "planned", "needed"),
+    [
+        (1e-4, None, 5e-5),
+        (1e-4, 2e-5, 2e-5),
+        (1e-5, 2e-5, 5e-6),
+        (0.05, None, 1e-3),
+        (0.05, 0.02, 1e-3),
+    ],
+)
+def test_a_scene_that_asks_is_solved_to_half_of_it_but_never_less_than_usual(ask, planned, needed):
+    operating = Operating(solver_tolerance=planned)
+    scene = _scene(Ask(("torque",), tolerance=ask), operating=operating)
+    assert asked_tolerance(scene) == pytest.approx(needed, rel=1e-12)
+    assert bool(tolerance_notes(scene, None)) == (needed < 1e-3)
+    assert not tolerance_notes(scene, 1e-3)
 
 
 def test_tests_are_not_probes():

@@ -33,8 +33,9 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     add_scene(sub)
     add_operating_point(sub)
     sub.add_argument(
-        "--tolerance", type=float, default=1e-3, help="relative error; %(default)g if not given"
-    )
+        "--tolerance", type=float,
+        help="relative error; 0.001, or less if what the scene asks needs it, if not given",
+    )  # fmt: skip
     add_start_values(sub)
     add_replacements(sub)
     add_cells(sub)

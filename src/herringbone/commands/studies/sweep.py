@@ -55,7 +55,11 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--record-step", type=float, help="time between records in s")
     sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
     sub.add_argument("--step", type=float, help="step size in s, of the coupling or the core")
-    sub.add_argument("--tolerance", type=float, help="relative error of each point")
+    sub.add_argument(
+        "--tolerance", type=float,
+        help="relative error of each point; 0.001, or less if the scene asks steady states for it, "
+        "if not given",
+    )  # fmt: skip
     sub.add_argument("--algorithm", help="run coupled with this algorithm, not fused")
     add_replacements(sub)
     add_cells(sub)

@@ -11,6 +11,7 @@ from herringbone.core import ParameterError
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.asked_tolerance import asked_tolerance, tolerance_notes
 from herringbone.running.operating.at_point import NOTHING, prepared_at
 from herringbone.running.operating.by_hand import said_by_hand
 from herringbone.running.operating.commanded import own_point, with_known_values
@@ -31,7 +32,7 @@ def steady(
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: Named | None = None,
     replace_parts: Mapping[str, str | Path] | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: float | None = None,
     near: SteadyState | None = None,
     longest: float = LONGEST,
     solver: str = AUTO,
@@ -52,7 +53,8 @@ def steady(
         torque: at the pinion [N m], likewise.
         values, gear, housing, replace_parts: see `herringbone.run`.
         tolerance: error of the alternating part of each group of channels, harmonics left out
-            included; small channels beside large ones may err more; of a run see above.
+            included; small channels beside large ones may err more; of a run see above. None:
+            1e-3, or less if a scene that asks needs it.
         near: a state nearby, to begin from; it decides on the branch where there are several.
         longest: duration of a run that is tried at most [s].
         solver: "auto", the cheapest way that finds a motion, or "shooting"; see `docs/steady.md`.
@@ -71,8 +73,9 @@ def steady(
         if solver != AUTO:
             raise ParameterError(f"solver = {solver}: foreign parts show no equations; drop it")
         point.check()
-        check_tolerance(tolerance)
-        return settled(system, scene, point, wishes, tolerance, longest)
+        least = TOLERANCE if tolerance is None else tolerance
+        check_tolerance(least)
+        return settled(system, scene, point, wishes, least, longest)
     found = prepared_at(point, system, scene, wishes)
     prepared, notes = _solver_of(found, point, wishes, tolerance, solver)
     state = prepared.solve(point, near)
@@ -95,19 +98,23 @@ def prepared_solver(
     scene: str | Path | Scene | None = None,
     point: Point = AS_IT_IS,
     wishes: Wishes = NOTHING,
-    tolerance: float = TOLERANCE,
+    tolerance: float | None = TOLERANCE,
     solver: str = AUTO,
 ) -> tuple[SteadySolver, tuple[str, ...]]:
-    """What solves for steady states near an operating point, and notes; see `steady`."""
+    """What solves for steady states near an operating point, and notes; see `steady`.
+
+    A tolerance of None is what the scene asks for.
+    """
     found = prepared_at(point, system, scene, wishes)
     return _solver_of(found, point, wishes, tolerance, solver)
 
 
 def _solver_of(
-    found: Prepared, point: Point, wishes: Wishes, tolerance: float, solver: str
+    found: Prepared, point: Point, wishes: Wishes, tolerance: float | None, solver: str
 ) -> tuple[SteadySolver, tuple[str, ...]]:
     """With the model that the scene leaves, and what is to be said of it."""
-    prepared = SteadySolver(found.system, tolerance, lean=lean_of(found.scene), solver=solver)
+    least = asked_tolerance(found.scene) if tolerance is None else tolerance
+    prepared = SteadySolver(found.system, least, lean=lean_of(found.scene), solver=solver)
     own = own_point(found.system) if found.scene.model else (None, None)
     said = lean_notes(found.scene.model, changed_by(wishes), point.speed, point.torque, own)
-    return prepared, (*found.notes, *said)
+    return prepared, (*found.notes, *tolerance_notes(found.scene, tolerance), *said)

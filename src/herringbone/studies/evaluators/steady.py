@@ -14,12 +14,14 @@ from herringbone.analysis.steady.searching.guess import Guess, Neighbour
 from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed
 from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point as SteadyPoint
-from herringbone.analysis.steady.solver import AUTO, TOLERANCE, SteadySolver
+from herringbone.analysis.steady.solver import AUTO, SteadySolver
 from herringbone.analysis.steady.state import BALANCE, SteadyState
 from herringbone.core import ParameterError
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.asked_tolerance import asked_tolerance
 from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.running.operating.steady import prepared_solver
+from herringbone.scenes import Scene
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation, Figure
 from herringbone.studies.evaluators.levels import (
     PERIOD,
@@ -38,20 +40,26 @@ class Steady:
     """Steady states where all equations are known.
 
     Attributes:
-        tolerance: error of the alternating part of each group of channels.
+        tolerance: error of the alternating part of each group of channels; None: as
+            `herringbone.steady` chooses it.
         columns: further columns or patterns with figures of their own.
         sensitivities: of the levels of all groups, to parameters that match these patterns; to all
             dampings if there is none. None: they are not asked for.
         solver: see `herringbone.steady`.
     """
 
-    tolerance: float = TOLERANCE
+    tolerance: float | None = None
     columns: tuple[str, ...] = ()
     sensitivities: tuple[str, ...] | None = None
     solver: str = AUTO
     longest: int | None = None
     modules: tuple[str, ...] = ("herringbone.studies.evaluators.steady",)
     has_series: bool = False
+
+    def as_fine_as_asked(self, scene: Scene) -> "Steady":
+        """With the tolerance that is taken if none was given: rows are known by it."""
+        given = self.tolerance
+        return replace(self, tolerance=asked_tolerance(scene) if given is None else given)
 
     def opened(self, base: Base) -> Evaluation:
         """Load system and scene; raises HerringboneError."""

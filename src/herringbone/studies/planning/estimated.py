@@ -11,7 +11,8 @@ from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.lean import Lean
-from herringbone.studies.planning.rung import SHARE, STEADY, Rung, Worst, worst
+from herringbone.scenes.asking import SHARE
+from herringbone.studies.planning.rung import STEADY, Rung, Worst, worst
 
 _STAIRS = 5
 """Rungs of modes that are listed."""

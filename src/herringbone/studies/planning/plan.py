@@ -133,6 +133,8 @@ def plan(
             fine, questions, asking, lean_of(asking), for_fmu=for_fmu, estimated=estimated
         )
         tolerance, charted = certifier.tolerance, certifier
+        at_it = replace(asking.operating, solver_tolerance=tolerance)
+        asking = replace(asking, operating=at_it)
     asking = with_options(asking, values=values)
     notes = (*found.notes, *said)
     made = _made(found.system, asking, questions, rungs, tolerance, begin, notes)

@@ -8,8 +8,6 @@ from herringbone.analysis.leaner.question import Apart, Question
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 
-SHARE = 0.5
-"""Of a tolerance, for what the model leaves out; the rest is the solver's."""
 STEADY, FUSED, COUPLED = "steady state", "fused run", "coupled run"
 """Solvers."""
 

@@ -12,11 +12,12 @@ from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST
 from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
 from herringbone.scenes import Scene
+from herringbone.scenes.asking import SHARE
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.estimated import Ladder, frozen_where_they_bend
 from herringbone.studies.planning.marching import marched
 from herringbone.studies.planning.points import points_to_probe, points_to_test
-from herringbone.studies.planning.rung import FUSED, SHARE, STEADY, Rung
+from herringbone.studies.planning.rung import FUSED, STEADY, Rung
 
 _TRIED = 3
 """Rungs that are solved at most."""
