@@ -10,6 +10,8 @@ from herringbone.scenes.checks import chosen
 
 SHARE = 0.5
 """Of a tolerance, for what the model leaves out, and as much for the solver."""
+LEAST = 2e-7
+"""Tolerance that can be asked for: solvers go to half of it."""
 Range = tuple[float, float]
 """Lowest and highest value."""
 
@@ -59,6 +61,8 @@ class Ask:
             raise ParameterError(
                 f"ask: tolerance = {self.tolerance:g}: it must lie between 0 and 1"
             )
+        if self.tolerance < LEAST:
+            raise ParameterError(f"ask: tolerance = {self.tolerance:g}: at least {LEAST:g}")
         if self.band < math.inf and (self.form != Form.SPECTRUM or not self.band > 0.0):
             raise ParameterError(
                 f'ask: band = {self.band:g} Hz: it must be positive, and is of as = "spectrum"'

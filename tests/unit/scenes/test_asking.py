@@ -66,6 +66,7 @@ def test_what_is_written_is_read_again(tmp_path):
         ('[ask]\nwhat = "x"', "ask: it takes tables [[ask]]"),
         ("[[ask]]\ntolerance = 0.1", "ask: what: it takes the names"),
         ('[[ask]]\nwhat = "x"\ntolerance = 1', "ask: tolerance = 1: it must lie between 0 and 1"),
+        ('[[ask]]\nwhat = "x"\ntolerance = 1e-9', "ask: tolerance = 1e-09: at least 2e-07"),
         ('[[ask]]\nwhat = "x"\nas = "sound"', "ask: as = 'sound'; it must be one of signal,"),
         ('[[ask]]\nwhat = "x"\nas = "order"', "ask: orders: a list of positive mesh orders"),
         ('[[ask]]\nwhat = "x"\nas = "level"\nband = 5', "ask: band = 5 Hz: it must be positive"),

@@ -12,11 +12,12 @@ from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.core import ParameterError
 from herringbone.core.process.one_thread import one_blas_thread
+from herringbone.scenes.asking import LEAST, SHARE
 from herringbone.studies.planning.rung import Worst, worst
 
 FINER = 20.0
 """How much finer than the tolerance models are compared."""
-_LEAST, _LOOSEST = 1e-7, 0.05
+_LEAST, _LOOSEST = SHARE * LEAST, 0.05
 """Tolerances of a solver."""
 _TIGHTER, _LOWER = 4, 0.2
 """How often a solver's tolerance is lowered, and by what."""
