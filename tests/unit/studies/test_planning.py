@@ -11,7 +11,7 @@ import pytest
 import herringbone as hb
 from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import Question, apart, lines_of
-from herringbone.analysis.twin.condensed.lean import WHOLE
+from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.core import ParameterError
 from herringbone.core.places.paths import component_folder
 from herringbone.plotting.studies.plan_chart import plan_chart
@@ -26,7 +26,8 @@ from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.marching import Marched
 from herringbone.studies.planning.plan import Plan, plan
 from herringbone.studies.planning.points import points_to_probe, points_to_test
-from herringbone.studies.planning.rung import FUSED, STEADY
+from herringbone.studies.planning.rung import FUSED, STEADY, Rung
+from herringbone.studies.planning.steady_plan import chosen_of
 from herringbone.studies.planning.text import estimates_text, plan_summary, plan_text, write_plan
 from herringbone.studies.planning.transient_plan import worst_of
 
@@ -66,7 +67,7 @@ def test_the_whole_ladder_is_there_and_says_why():
     assert len(found.rungs) <= 200
     for name in ("housing driven one way", "housing rigid", "torsion only"):
         assert names[name].estimate.error > 0.3
-        assert "estimate" in names[name].why
+        assert names[name].why == "its estimate is above 0.4 of the tolerance"
     measured = [rung for rung in found.rungs if rung.estimate and rung.measured]
     assert measured
     assert sum(not rung.why for rung in found.rungs) == 1
@@ -76,6 +77,17 @@ def test_the_whole_ladder_is_there_and_says_why():
     assert "<- choice" in text
     assert "Planning took" in text
     assert json.loads(json.dumps(plan_summary(found)))["choice"] == found.choice.name
+
+
+@pytest.mark.parametrize(("cost", "why"), [(0.5, "not known to settle in 0.2 s"), (4.0, "dearer")])
+def test_a_run_that_costs_less_is_not_called_dearer(cost, why):
+    run = Rung("a run of 0.2 s to settle", FUSED, cost=cost, why="not known to settle in 0.2 s")
+    leaner = Rung("leaner", STEADY, Lean(("housing.q[1]",)), cost=1.0)
+    rungs = chosen_of([Rung("whole model", STEADY, cost=2.0), run, leaner], leanest=False)
+    assert [rung.why for rung in rungs] == ["dearer", why, ""]
+    text = "\n".join(plan_text(Plan("rig", Scene("asking"), (), tuple(rungs), 0.01, 3.0)))
+    assert "saves 1e+03 ms an answer against steady states of the whole model" in text
+    assert ("A fused run costs less, 500 ms, and answers as well" in text) == (cost < 1.0)
 
 
 def test_estimates_are_told_before_any_leaner_model_is_solved(monkeypatch):

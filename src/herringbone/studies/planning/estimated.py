@@ -122,7 +122,7 @@ class Ladder:
         if frozen_where_they_bend(lean, self._states):
             return replace(rung, why="its laws bend, as teeth that separate do")
         if not self.allowed(rung):
-            return replace(rung, why="its estimate is above half of the tolerance")
+            return replace(rung, why=f"its estimate is above {_SAFE * SHARE:g} of the tolerance")
         return rung
 
 

@@ -81,7 +81,7 @@ def steady_rungs(
     every = [replace(whole, cost=costs[0])]
     every += [_run(solver, questions, scene)]
     every += [replace(rung, cost=cost_of.get(id(rung))) for rung in rungs]
-    chosen = _chosen(every, leanest=for_fmu)
+    chosen = chosen_of(every, leanest=for_fmu)
     return chosen, certifier, _remarks(questions, states)
 
 
@@ -121,11 +121,12 @@ def _run(solver: SteadySolver, questions: Sequence[Question], scene: Scene) -> R
     spent = [marched(core, trial, record, steps, columns).seconds for _ in range(2)]
     cost = min(spent) * scene.t_end / trial  # the first one may compile
     name = f"whole model, a run of {scene.t_end:g} s to settle"
-    return Rung(name, FUSED, cost=cost, step=steps.length, why="dearer")
+    why = f"not known to settle in {scene.t_end:g} s"
+    return Rung(name, FUSED, cost=cost, step=steps.length, why=why)
 
 
-def _chosen(rungs: Sequence[Rung], *, leanest: bool) -> list[Rung]:
-    """The rungs, each with why it is not the choice."""
+def chosen_of(rungs: Sequence[Rung], *, leanest: bool) -> list[Rung]:
+    """The rungs, the whole model first, each with why it is not the choice; a run is never it."""
     priced = [rung for rung in rungs if rung.cost is not None and rung.solver == STEADY]
     whole = rungs[0]
     if leanest:
@@ -140,6 +141,8 @@ def _chosen(rungs: Sequence[Rung], *, leanest: bool) -> list[Rung]:
 def _why(rung: Rung, choice: Rung, dearer: str = "dearer") -> str:
     if rung is choice:
         return ""
+    if rung.solver == FUSED:
+        return dearer if (rung.cost or 0.0) > (choice.cost or 0.0) else rung.why
     if rung.cost is not None:
         return "no cheaper" if choice.whole else dearer
     if rung.measured is not None and rung.measured.ratio > SHARE:

@@ -13,7 +13,7 @@ from herringbone.core.wording import percent
 from herringbone.scenes import Motion
 from herringbone.scenes.scene_text import scene_text
 from herringbone.studies.planning.plan import Plan
-from herringbone.studies.planning.rung import Rung, Worst
+from herringbone.studies.planning.rung import FUSED, Rung, Worst
 
 SCENE, SUMMARY = "scene.toml", "plan.json"
 
@@ -76,12 +76,25 @@ def _worth(plan: Plan) -> str:
     if not plan.saved:
         return (
             "Leaving things out saves nothing here: another plan is not worth its cost, solve the "
-            "whole model"
+            f"whole model{_of_a_run(plan)}"
         )
     answers = math.ceil(plan.seconds / plan.saved)
     return (
-        f"Leaving things out saves {_time(plan.saved)} an answer: for fewer than {answers} answers "
-        "planning costs more than it saves"
+        f"Leaving things out saves {_time(plan.saved)} an answer against steady states of the "
+        f"whole model: for fewer than {answers} answers planning costs more than it saves"
+        f"{_of_a_run(plan)}"
+    )
+
+
+def _of_a_run(plan: Plan) -> str:
+    """That a run would cost less than the choice, if it does."""
+    cost, runs = plan.choice.cost or 0.0, (r for r in plan.rungs if r.solver == FUSED)
+    run = next(runs, None)
+    if run is None or run.cost is None or run.cost >= cost:
+        return ""
+    return (
+        f". A fused run costs less, {_time(run.cost)}, and answers as well if all has settled in "
+        f"{plan.scene.t_end:g} s, which was not tried"
     )
 
 
