@@ -1,5 +1,6 @@
 """What scenes ask, with all outputs by name."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -14,6 +15,7 @@ from herringbone.scenes import Ask
 
 USUAL = tuple(Ask((what,)) for what in ("bearing force", "seat velocity"))
 """What is looked at if a scene asks nothing."""
+_SENSOR = re.compile(rf"{SENSOR}s?(?:[\s_]+(.+))?", re.IGNORECASE)
 
 
 def questions_of(core: Core, asks: Sequence[Ask]) -> list[Question]:
@@ -45,19 +47,26 @@ def _by_kind(ask: Ask) -> Iterator[Ask]:
     kinds: dict[str, list[str]] = {}
     for what in ask.what:
         word = what.replace("_", " ").strip().lower()
-        kind = SENSOR if word.split()[:1] in ([SENSOR], [f"{SENSOR}s"]) else word
+        kind = word if _sensor(what) is None else SENSOR
         kinds.setdefault(kind if kind in {SENSOR, POWER} else "", []).append(what)
     yield from (replace(ask, what=tuple(own)) for own in kinds.values())
 
 
+def _sensor(what: str) -> str | None:
+    """Name of a sensor that is asked for; "" for all of them, None for something else."""
+    found = _SENSOR.fullmatch(what.strip())
+    return None if found is None else (found[1] or "")
+
+
 def _columns(core: Core, ask: Ask) -> tuple[View | None, tuple[str, ...]]:
     """What is asked for as a view on outputs, and these."""
-    system, words = core.twin.system, [what.replace("_", " ").split() for what in ask.what]
-    if words[0][0].lower() in {SENSOR, f"{SENSOR}s"}:
-        named = [" ".join(word[1:]) for word in words if len(word) > 1]
-        view, columns = sensors_view(system, tuple(named or system.sensors))
+    system = core.twin.system
+    named = [name for what in ask.what if (name := _sensor(what)) is not None]
+    if named:
+        names = dict.fromkeys(named) if all(named) else system.sensors
+        view, columns = sensors_view(system, tuple(names))
         return view, tuple(columns)
-    if " ".join(words[0]).lower() == POWER:
+    if ask.what[0].replace("_", " ").strip().lower() == POWER:
         if ask.form is Form.SIGNAL:
             raise ParameterError(f"ask: {POWER} is a mean over time; ask for it as level or lines")
         power, columns = power_view(system)

@@ -1,6 +1,8 @@
 """Sound and sensors as questions: what a run's results say of them, from lines alone."""
 
 import math
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -69,6 +71,22 @@ def test_what_is_asked_together_is_answered_apart(state):
         ("A", "C"),
         ("gearbox.modal_housing",),
     ]
+
+
+@pytest.mark.parametrize(
+    ("what", "names"),
+    [
+        (("sensor input_shaft",), ("input_shaft",)),
+        (("Sensor_input_shaft", "sensor C"), ("input_shaft", "C")),
+        (("sensor C", "sensors"), ("input_shaft", "B", "C")),
+    ],
+)
+def test_sensors_are_meant_by_their_own_names(state, what, names):
+    system = state.structure.core.twin.system
+    own = {"input_shaft" if name == "A" else name: spec for name, spec in system.sensors.items()}
+    core = SimpleNamespace(twin=SimpleNamespace(system=replace(system, sensors=own)))
+    (question,) = questions_of(core, (Ask(what),))
+    assert question.outputs == names
 
 
 @pytest.mark.parametrize(
