@@ -3,10 +3,11 @@
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import partial
 
 from herringbone.analysis.leaner.form import Form
 from herringbone.core import ParameterError
-from herringbone.scenes.checks import chosen
+from herringbone.scenes.checks import chosen, ends, names, number, several
 
 SHARE = 0.5
 """Of a tolerance, for what the model leaves out, and as much for the solver."""
@@ -45,18 +46,26 @@ class Ask:
     orders: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        """Take a text for one name or the form, and check values.
+        """Take a text for one name or the form, a number for one order, and check values.
 
         Raises:
-            ParameterError: nothing is asked, or a value is out of range.
+            ParameterError: nothing is asked, or a value is of the wrong type or out of range.
         """
-        object.__setattr__(self, "form", chosen(Form, self.form, "ask: as"))
-        if isinstance(self.what, str):
-            object.__setattr__(self, "what", (self.what,))
+        put = partial(object.__setattr__, self)
+        put("form", chosen(Form, self.form, "ask: as"))
+        put("what", names(self.what, "ask: what"))
         if not self.what:
             raise ParameterError(
                 'ask: what: it takes the names of what is asked, ["seat velocity"]'
             )
+        put("tolerance", number(self.tolerance, "ask: tolerance"))
+        put("orders", tuple(number(k, "ask: orders") for k in several(self.orders)))
+        if self.band != math.inf:
+            put("band", number(self.band, "ask: band"))
+        self._check_ranges()
+
+    def _check_ranges(self) -> None:
+        """Raise ParameterError if a value is out of range."""
         if not 0.0 < self.tolerance < 1.0:
             raise ParameterError(
                 f"ask: tolerance = {self.tolerance:g}: it must lie between 0 and 1"
@@ -89,7 +98,7 @@ class Operating:
 
     Attributes:
         motion: what kind of; a text becomes the choice that it names.
-        speed: set point that the system declares, at its own shaft [rad/s].
+        speed: set point that the system declares, at its own shaft [rad/s]; a number is both ends.
         torque: the same [N m].
         solver_tolerance: for steady states, which a plan found; None: follows from what is asked.
     """
@@ -100,12 +109,31 @@ class Operating:
     solver_tolerance: float | None = None
 
     def __post_init__(self) -> None:
-        """Take a text for the motion.
+        """Take a text for the motion, a number for both ends of a range, and check values.
 
         Raises:
-            ParameterError: there is no such motion.
+            ParameterError: there is no such motion, a value is of the wrong type or out of range,
+                or a transient has a set point.
         """
-        object.__setattr__(self, "motion", chosen(Motion, self.motion, "operating: motion"))
+        put = partial(object.__setattr__, self)
+        put("motion", chosen(Motion, self.motion, "operating: motion"))
+        if self.speed is not None:
+            put("speed", ends(self.speed, "operating: speed", still=False))
+        if self.torque is not None:
+            put("torque", ends(self.torque, "operating: torque"))
+        if self.motion is Motion.TRANSIENT and (self.speed or self.torque):
+            raise ParameterError(
+                "operating: speed, torque: a transient has those of its cycle; set what commands "
+                "them"
+            )
+        if self.solver_tolerance is not None:
+            given = number(self.solver_tolerance, "operating: solver_tolerance")
+            if not SHARE * LEAST <= given < 1.0:
+                raise ParameterError(
+                    f"operating: solver_tolerance = {given:g}: it must lie between "
+                    f"{SHARE * LEAST:g} and 1"
+                )
+            put("solver_tolerance", given)
 
 
 @dataclass(frozen=True)

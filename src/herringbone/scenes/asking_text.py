@@ -9,13 +9,12 @@ from herringbone.analysis.leaner.form import Form
 from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
 from herringbone.scenes.asking import Ask, Model, Motion, Operating, Range
-from herringbone.scenes.checks import chosen
+from herringbone.scenes.checks import ends, names, number
 
 ASKING = {"ask", "operating", "model"}
 """Keys of a scene that are read here."""
 _PARTS = ("one_way", "frozen", "linear")
 """Of a model: what names parts."""
-_ENDS = 2
 
 
 def read_asking(data: Mapping[str, Any], file: Path) -> tuple[tuple[Ask, ...], Operating, Model]:
@@ -46,42 +45,34 @@ def _tables(given: Any) -> list[Any]:  # noqa: ANN401 (anything from TOML)
 
 def _ask(data: Any) -> Ask:  # noqa: ANN401 (anything from TOML)
     _known(data, "ask", {"what", "as", "tolerance", "band", "orders"})
-    what = _texts(data.get("what", []), "ask: what")
-    form = chosen(Form, data.get("as", Form.SPECTRUM), "ask: as")
-    tolerance = _number(data.get("tolerance", 0.01), "ask: tolerance")
-    band = _number(data["band"], "ask: band") if "band" in data else math.inf
-    orders = data.get("orders", [])
-    orders = tuple(_number(k, "ask: orders") for k in (orders if isinstance(orders, list) else [0]))
-    return Ask(what, form, tolerance, band, orders)
+    given = data.get
+    return Ask(
+        given("what", ()), given("as", Form.SPECTRUM), given("tolerance", 0.01),
+        given("band", math.inf), given("orders", ()),
+    )  # fmt: skip
 
 
 def _operating(data: Any) -> Operating:  # noqa: ANN401
     _known(data, "operating", {"motion", "speed", "torque", "solver_tolerance"})
-    motion = chosen(Motion, data.get("motion", Motion.STEADY), "operating: motion")
     speed, torque = _range(data, "operating", "speed"), _range(data, "operating", "torque")
     if speed is not None:
         speed = (speed[0] / R_MIN, speed[1] / R_MIN)
-    if motion is Motion.TRANSIENT and (speed or torque):
-        raise ParameterError(
-            "operating: speed, torque: a transient has those of its cycle; set what commands them"
-        )
-    key = "solver_tolerance"
-    tolerance = _number(data[key], f"operating: {key}") if key in data else None
-    return Operating(motion, speed, torque, tolerance)
+    given = data.get("solver_tolerance")
+    return Operating(data.get("motion", Motion.STEADY), speed, torque, given)
 
 
 def _model(data: Any) -> Model:  # noqa: ANN401
     _known(data, "model", {"hold", *_PARTS, "harmonics", "error", "speed", "torque"})
-    error = None if "error" not in data else _number(data["error"], "model: error")
+    error = None if "error" not in data else number(data["error"], "model: error")
     speed = _range(data, "model", "speed")
     return Model(
-        _texts(data.get("hold", []), "model: hold"),
-        _texts(data.get("one_way", []), "model: one_way"),
+        names(data.get("hold", []), "model: hold"),
+        names(data.get("one_way", []), "model: one_way"),
         error,
         None if speed is None else (speed[0] / R_MIN, speed[1] / R_MIN),
         _range(data, "model", "torque"),
-        _texts(data.get("frozen", []), "model: frozen"),
-        _texts(data.get("linear", []), "model: linear"),
+        names(data.get("frozen", []), "model: frozen"),
+        names(data.get("linear", []), "model: linear"),
         _counts(data.get("harmonics", {})),
     )
 
@@ -105,38 +96,15 @@ def _known(data: Any, name: str, keys: set[str]) -> None:  # noqa: ANN401
         )
 
 
-def _texts(given: Any, name: str) -> tuple[str, ...]:  # noqa: ANN401
-    found = [given] if isinstance(given, str) else given
-    if not isinstance(found, list) or not all(isinstance(each, str) for each in found):
-        raise ParameterError(f"{name} = {given!r}: it takes a list of names")
-    return tuple(found)
-
-
-def _number(given: Any, name: str) -> float:  # noqa: ANN401
-    if isinstance(given, bool) or not isinstance(given, int | float) or not math.isfinite(given):
-        raise ParameterError(f"{name} = {given!r}: it takes a finite number")
-    return float(given)
-
-
 def _range(data: Mapping[str, Any], table: str, key: str) -> Range | None:
-    """A number, or [LOWEST, HIGHEST]."""
-    if key not in data:
-        return None
-    given = data[key] if isinstance(data[key], list) else [data[key], data[key]]
-    if len(given) != _ENDS:
-        raise ParameterError(f"{table}: {key} = {given!r}: a number, or [LOWEST, HIGHEST]")
-    low, high = (_number(end, f"{table}: {key}") for end in given)
-    if low > high or (key == "speed" and low <= 0.0 <= high):
-        raise ParameterError(
-            f"{table}: {key} = [{low:g}, {high:g}]: the lower one first, and no standstill between"
-        )
-    return low, high
+    """A number, or [LOWEST, HIGHEST]; speeds are in r/min here, and checked as such."""
+    return ends(data[key], f"{table}: {key}", still=key != "speed") if key in data else None
 
 
 def asking_text(asks: tuple[Ask, ...], operating: Operating, model: Model) -> Iterator[str]:
     """Lines of a scene, as `read_asking` takes them."""
-    ends = {"speed": operating.speed, "torque": operating.torque}
-    yield from ("", "[operating]", f'motion = "{operating.motion}"', *_ranges(ends))
+    at = {"speed": operating.speed, "torque": operating.torque}
+    yield from ("", "[operating]", f'motion = "{operating.motion}"', *_ranges(at))
     if operating.solver_tolerance is not None:
         yield f"solver_tolerance = {operating.solver_tolerance:.6g}"
     for ask in asks:
@@ -157,12 +125,12 @@ def asking_text(asks: tuple[Ask, ...], operating: Operating, model: Model) -> It
         yield from _ranges({"speed": model.speed, "torque": model.torque})
 
 
-def _listed(names: tuple[str, ...]) -> str:
-    return "[" + ", ".join(f'"{name}"' for name in names) + "]"
+def _listed(texts: tuple[str, ...]) -> str:
+    return "[" + ", ".join(f'"{text}"' for text in texts) + "]"
 
 
-def _ranges(ends: Mapping[str, Range | None]) -> Iterator[str]:
-    for key, given in ends.items():
+def _ranges(by_key: Mapping[str, Range | None]) -> Iterator[str]:
+    for key, given in by_key.items():
         if given is not None:
             low, high = (value * (R_MIN if key == "speed" else 1.0) for value in given)
             yield f"{key} = [{low:.12g}, {high:.12g}]"

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 from herringbone.core import ParameterError
 
 _Kind = TypeVar("_Kind", bound=StrEnum)
+_ENDS = 2
 
 
 def chosen(kind: type[_Kind], given: Any, name: str) -> _Kind:  # noqa: ANN401 (anything from TOML)
@@ -42,3 +43,44 @@ def duration(given: Any, name: str) -> float:  # noqa: ANN401
     if not (math.isfinite(value) and value > 0.0):
         raise ParameterError(f"{name} = {value:g} s: it must be positive and finite")
     return value
+
+
+def number(given: Any, name: str) -> float:  # noqa: ANN401
+    """A finite number; raises ParameterError."""
+    if isinstance(given, bool) or not isinstance(given, Real) or not math.isfinite(given):
+        raise ParameterError(f"{name} = {given!r}: it takes a finite number")
+    return float(given)
+
+
+def names(given: Any, name: str) -> tuple[str, ...]:  # noqa: ANN401
+    """A name, or several; raises ParameterError for something else, and blank ones."""
+    found = several(given)
+    if not all(isinstance(each, str) and each.strip() for each in found):
+        raise ParameterError(f"{name} = {given!r}: it takes a name or a list of names")
+    return tuple(found)
+
+
+def several(given: Any) -> list[Any]:  # noqa: ANN401
+    """What a list or tuple has; anything else stands for one."""
+    return list(given) if isinstance(given, list | tuple) else [given]
+
+
+def ends(given: Any, name: str, *, still: bool = True) -> tuple[float, float]:  # noqa: ANN401
+    """A range from a number, which is both ends, or from two.
+
+    Args:
+        given: it.
+        name: of it, for the message.
+        still: 0 may be in it.
+
+    Raises:
+        ParameterError: it is none, its ends are the wrong way round, or 0 is in it and must not be.
+    """
+    found = several(given) if isinstance(given, list | tuple) else [given, given]
+    if len(found) != _ENDS:
+        raise ParameterError(f"{name} = {given!r}: a number, or [LOWEST, HIGHEST]")
+    low, high = (number(end, name) for end in found)
+    if low > high or (not still and low <= 0.0 <= high):
+        hint = "" if still else ", and no standstill between"
+        raise ParameterError(f"{name} = [{low:g}, {high:g}]: the lower one first{hint}")
+    return low, high

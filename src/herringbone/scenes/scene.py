@@ -15,7 +15,7 @@ from herringbone.core.reading.structured import read_toml
 from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, part_files
 from herringbone.scenes.asking import Ask, Model, Operating
 from herringbone.scenes.asking_text import ASKING, read_asking
-from herringbone.scenes.checks import chosen, duration
+from herringbone.scenes.checks import chosen, duration, several
 
 DEFAULT_SCENE = "loaded"
 _TABLES = {"set", "start_offset"}
@@ -67,14 +67,18 @@ class Scene(Facts):
     model: Model = field(default_factory=Model)
 
     def __post_init__(self) -> None:
-        """Take a text for the start, and check start and times.
+        """Take a text for the start and an Ask for the only one, and check what is given.
 
         Raises:
-            ParameterError: there is no such start, or a time is no positive, finite number.
+            ParameterError: there is no such start, a time is no positive, finite number, or what
+                is asked is no Ask.
         """
         object.__setattr__(self, "start", chosen(Start, self.start, "scene: start"))
         for key in sorted(_NUMBERS):
             object.__setattr__(self, key, duration(getattr(self, key), f"scene: {key}"))
+        object.__setattr__(self, "asks", tuple(several(self.asks)))
+        if wrong := [ask for ask in self.asks if not isinstance(ask, Ask)]:
+            raise ParameterError(f"scene: asks = {wrong[0]!r}: it takes Ask(...), or several")
 
     def _facts(self) -> dict[str, str]:
         return {

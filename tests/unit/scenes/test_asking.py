@@ -3,11 +3,12 @@
 import math
 import re
 
+import numpy as np
 import pytest
 
 from herringbone.analysis.leaner.form import Form
 from herringbone.core import ParameterError
-from herringbone.scenes import Ask, Model, Motion, Operating, read_scene
+from herringbone.scenes import Ask, Model, Motion, Operating, Scene, read_scene
 from herringbone.scenes.asking_text import asking_text
 
 _ALL = """
@@ -63,6 +64,12 @@ def test_what_is_written_is_read_again(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
+        ('[[ask]]\nwhat = ""', "ask: what = '': it takes a name or a list of names"),
+        ('[[ask]]\nwhat = "x"\nband = true', "ask: band = True: it takes a finite number"),
+        (
+            "[operating]\nsolver_tolerance = 2",
+            "operating: solver_tolerance = 2: it must lie between",
+        ),
         ('[ask]\nwhat = "x"', "ask: it takes tables [[ask]]"),
         ("[[ask]]\ntolerance = 0.1", "ask: what: it takes the names"),
         ('[[ask]]\nwhat = "x"\ntolerance = 1', "ask: tolerance = 1: it must lie between 0 and 1"),
@@ -86,6 +93,36 @@ def test_refused_in_one_line(tmp_path, text, message):
         _read(tmp_path, text)
     assert str(tmp_path) in str(error.value)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Ask("  "), "ask: what = '  ': it takes a name or a list of names"),
+        (lambda: Ask(5), "ask: what = 5: it takes a name or a list of names"),
+        (lambda: Ask("x", tolerance="1%"), "ask: tolerance = '1%': it takes a finite number"),
+        (lambda: Ask("x", band=math.nan), "ask: band = nan: it takes a finite number"),
+        (lambda: Ask("x", "order", orders=(math.nan,)), "ask: orders = nan: it takes a finite num"),
+        (lambda: Operating(speed=(2.0, 1.0)), "operating: speed = [2, 1]: the lower one first"),
+        (lambda: Operating(speed=(math.nan,) * 2), "operating: speed = nan: it takes a finite"),
+        (lambda: Operating(speed=(-1.0, 1.0)), "no standstill between"),
+        (lambda: Operating(torque=(1.0, 2.0, 3.0)), "operating: torque = (1.0, 2.0, 3.0): a numb"),
+        (lambda: Operating("transient", speed=9.0), "a transient has those of its cycle"),
+        (lambda: Scene("x", asks="torque"), "scene: asks = 'torque': it takes Ask(...), or sever"),
+    ],
+)
+def test_scripts_are_refused_as_files_are(make, message):
+    with pytest.raises(ParameterError, match=re.escape(message)):
+        make()
+
+
+def test_what_stands_for_one_is_one():
+    assert Operating(speed=104.7, torque=np.float64(-30)) == Operating(
+        speed=(104.7, 104.7), torque=(-30.0, -30.0)
+    )
+    assert Ask("x", "order", orders=1).orders == (1.0,)
+    assert Scene("x", asks=Ask("torque")).asks == (Ask(("torque",)),)
+    assert Scene("x", asks=[Ask("torque")]).asks == (Ask(("torque",)),)
 
 
 def test_choices_given_as_texts():
