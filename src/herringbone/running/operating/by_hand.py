@@ -20,7 +20,7 @@ from herringbone.running.fitted import housings_of
 from herringbone.running.housings.given import split_housings
 from herringbone.running.housings.rigid_ground import rigid_bearings
 from herringbone.running.loading import load_scene, load_system
-from herringbone.running.operating.commanded import own_point, with_known_values
+from herringbone.running.operating.commanded import changing, own_point, with_known_values
 from herringbone.running.operating.lean import SOURCE, certified, changed_by
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Model, Scene
@@ -42,6 +42,7 @@ class ByHand:
         scene, wishes: with which nothing is.
         unknown: why the whole model is not known; "" if it is.
         is_leaner: False if parts are replaced by what may know as much as they.
+        changing: set points that change in a run.
     """
 
     names: tuple[str, ...]
@@ -49,6 +50,7 @@ class ByHand:
     wishes: Wishes
     unknown: str = ""
     is_leaner: bool = True
+    changing: tuple[str, ...] = ()
 
 
 class SaidByHand(NamedTuple):
@@ -73,7 +75,8 @@ def said_by_hand(
     """The model error of what a user left out by hand, as a line and as a row of the budget.
 
     Model errors are those of the steady state of the operating point, for what the scene asks, or
-    for bearing forces and seat velocities if it asks nothing.
+    for bearing forces and seat velocities if it asks nothing. The row, which is of a run, has none
+    if its set points change.
 
     Args:
         system, scene, wishes: see `running.prepared.prepared`.
@@ -93,19 +96,24 @@ def said_by_hand(
         found = model_errors(whole, (system, scene, wishes), point, state)
     except HerringboneError as error:
         return _unknown(what, str(error), warn=True)
+    if own.changing:
+        named = " and ".join(own.changing)
+        row = _unknown_row(f"{what}: not known in a run whose set points of {named} change")
+    else:
+        how, worst = f"{what}: {found.where}", found.worst
+        row = BudgetRow(SOURCE, worst.name, found.errors[worst], Known.MEASURED, how)
     line = f"{'warning: ' if found.is_large else ''}{what}: {found}"
-    how = f"{what}: {found.where}"
-    worst = found.worst
-    return SaidByHand(
-        (line,), BudgetRow(SOURCE, worst.name, found.errors[worst], Known.MEASURED, how)
-    )
+    return SaidByHand((line,), row)
 
 
 def _unknown(what: str, why: str, *, warn: bool) -> SaidByHand:
     line = f"{what}: the model error is not known at this operating point: {why}"
-    how = f"{what}: not known at this operating point: {why}"
-    row = BudgetRow(SOURCE, _ASKED, None, Known.UNKNOWN, how)
+    row = _unknown_row(f"{what}: not known at this operating point: {why}")
     return SaidByHand((f"warning: {line}" if warn else line,), row)
+
+
+def _unknown_row(how: str) -> BudgetRow:
+    return BudgetRow(SOURCE, _ASKED, None, Known.UNKNOWN, how)
 
 
 def _left_out(
@@ -147,6 +155,7 @@ def _left_out(
         replace(wishes, housing=housings, values=values),
         "; ".join(unknown),
         leaner or bool(one_way),
+        tuple(changing(known)),
     )
 
 

@@ -70,6 +70,21 @@ def own_point(system: System) -> tuple[float | None, float | None]:
     return found.get(SPEED), found.get(TORQUE)
 
 
+def changing(system: System) -> list[str]:
+    """Which of speed and torque parts command without a constant value, as of a run-up.
+
+    Args:
+        system: with all its values.
+    """
+    found = []
+    for name, own in zip((SPEED, TORQUE), own_point(system), strict=True):
+        with suppress(HerringboneError):
+            at = set_point(system, name)
+            if own is None and at is not None and not at.given:
+                found.append(name)
+    return found
+
+
 def operated(
     system: str | Path | System,
     scene: str | Path | Scene | None,

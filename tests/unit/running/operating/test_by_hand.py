@@ -16,7 +16,7 @@ from herringbone.components.registry import component_for
 from herringbone.core.declaring.roles import Role
 from herringbone.housing import default_housing, write_housing
 from herringbone.running.reporting.summary import summary_text
-from herringbone.scenes import Ask, Scene
+from herringbone.scenes import Ask, Model, Scene
 
 _R_MIN = math.pi / 30.0
 _STILL = {"gear_mesh.symmetry_deviation": 0.0}
@@ -85,6 +85,23 @@ def test_what_the_system_or_the_whole_data_have_is_no_warning():
     ground = hb.run("on_ground", t_end=1e-3, fmu="in-process")
     assert not [note for note in ground.info.notes if "model error" in note]
     assert not [row for run in (whole, ground) for row in run.budget if "left out" in row.source]
+
+
+def test_of_a_run_up_the_budget_has_no_error_of_another_speed():
+    """Its steady state is that of the last set points, 1000 r/min, which the run may never have."""
+    scene = replace(
+        _ASKING,
+        start="rest",
+        values={**_STILL, "bench_controller.cycle": "runup.csv"},
+        model=Model(hold=("gearbox.modal_housing.q[9]", "gearbox.modal_housing.der(q[9])")),
+    )
+    found = hb.run("test_rig", scene=scene, fuse=True, t_end=2e-3)
+    (row,) = (row for row in found.budget if row.source == "model left out")
+    assert row.value is None
+    assert row.how == (
+        "leaner model of the scene: not known in a run whose set points of speed and torque change"
+    )
+    assert "steady at 1000 r/min" in _warning(found.info.notes)
 
 
 def test_of_a_housing_fmu_the_budget_says_that_nobody_knows(tmp_path):
