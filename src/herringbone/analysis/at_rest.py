@@ -42,6 +42,8 @@ class Rest:
 
     def reached(self, x: np.ndarray) -> np.ndarray | None:
         """The states (n,) at rest; None if they do not get there."""
+        if not self._moving.size:  # one free shaft between two torques: all of it stays
+            return x.copy()
         x, h, rate = x.copy(), _FIRST, self.rate(x)
         moving, size_of = self._moving, self._scale[self._moving]
         taken_at = slope = None

@@ -12,6 +12,7 @@ from herringbone.analysis.rigid_rotation import steady_rows, units_of_states
 from herringbone.analysis.steady_search import SCALE
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
+from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.running.prepared import Wishes, prepared
 
@@ -76,3 +77,19 @@ def test_torques_that_balance_at_no_angle(monkeypatch):
     pinion, wheel = (twin.block[twin.index(f"gear_mesh.{g}.inertia")] for g in ("pinion", "wheel"))
     said = float(re.search(r"changes by ([\d.]+) rad", str(caught.value))[1])
     assert said == pytest.approx((200.0 - 200.0 / 3.0) / (2.0 * (pinion + wheel / 9.0)), rel=1e-3)
+
+
+def test_one_free_shaft_between_torques_has_no_state_that_comes_to_rest():
+    """60 N m from the motor at 20 rad/s, over 0.2 kg m^2: 270 rad/s^2 at any angle.
+
+    Of its curve: 60 N m (1 - 0.5 x 20 / 100) = 54 N m.
+    """
+    motor = {"nominal_torque": 60.0, "nominal_speed": 100.0}
+    motor |= {"constant_share": 1.0, "linear_share": -0.5}
+    parts = (
+        PartSpec("motor", component="torque_source", values=motor),
+        PartSpec("disk", component="rotating_inertia", values={"inertia": 0.2, "speed": 20.0}),
+    )
+    twin = Twin(System("free", "", parts, (("disk.flange_a", "motor.flange"),)))
+    with pytest.raises(EquilibriumError, match=r"disk.* changes by 270 rad/s\^2 at any angle"):
+        list(balanced_angles(twin, twin.state, np.ones(twin.state.size)))
