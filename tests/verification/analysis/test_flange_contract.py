@@ -257,6 +257,14 @@ def test_what_cannot_be_tested_says_why(kinds, file, role, why):
     assert all(why in f.measured for f in untested)
 
 
+def test_a_flange_without_a_number_at_the_start_fails(tmp_path):
+    """A run with it ends as it begins."""
+    found = findings(c_flange(tmp_path, "ROTOR", "NONE", "START=NAN"), Role.LOAD)
+    assert failing(found) == ["numbers at the start"]
+    it = named(found, "numbers at the start")
+    assert it.measured == "flange.w: not finite before the first step"
+
+
 def test_variables_of_other_names_and_units(tmp_path, kinds):
     """A guess says what it took; a port that is told need not be guessed."""
     found = findings(kinds / "c_fixed_step_rotor.fmu", Role.LOAD)

@@ -15,6 +15,7 @@ from herringbone.analysis.finding import Finding, Report, Verdict, judged, not_t
 from herringbone.analysis.flange.answers import delay, feedthrough, sign
 from herringbone.analysis.flange.bench import Bench, Diverged
 from herringbone.analysis.flange.extent import longest_of, tell_cost
+from herringbone.analysis.flange.guess import QUANTITIES
 from herringbone.analysis.flange.rates import rate, turns
 from herringbone.analysis.flange.reaction import reaction, relative
 from herringbone.analysis.flange.rotation import rotation
@@ -30,6 +31,7 @@ from herringbone.cosim.signature.trial import NOT_TRIED
 FLANGES = {Role.DRIVE: 1, Role.LOAD: 1, Role.COUPLING: 2}
 """How many flanges a role has."""
 
+_NUMBERS = "numbers at the start"
 _OF_FLANGE: tuple[tuple[str, Callable[[Bench, Flange], Finding]], ...] = (
     ("no delay", delay),
     ("feedthrough", feedthrough),
@@ -91,8 +93,9 @@ def check_flanges(
             progress("what it is")
             cost.tell_cost(lab, part.name)
             signature = find_signature(lab, part.variables)
-            findings.append(_repeats(signature))
-            why = _impossible(signature, found)
+            no_numbers = list(_not_finite(lab, found))
+            findings += [_repeats(signature), *no_numbers]
+            why = f"see '{_NUMBERS}'" if no_numbers else _impossible(signature, found)
             if why:
                 return [*findings, *_nothing(why, role)]
             bench = Bench(
@@ -141,6 +144,16 @@ def _repeats(signature: Signature) -> Finding:
         return judged(test, True, "it saves and restores its state", limit)
     what = "it does not save its state" if signature.restores is None else signature.notes[0]
     return remark(test, f"{what}; the coupling steps it once", limit)
+
+
+def _not_finite(lab: Laboratory, flanges: Sequence[Flange]) -> Iterator[Finding]:
+    """A finding if a flange gives what is no number at the start: every run with it fails."""
+    given = {flange.variable(q) for flange in flanges for q in QUANTITIES if not flange.moves(q)}
+    named = dict(zip(lab.outputs, lab.start_outputs, strict=True))
+    wrong = [name for name, value in named.items() if name in given and not np.isfinite(value)]
+    if wrong:
+        shown = f"{', '.join(wrong)}: not finite before the first step"
+        yield judged(_NUMBERS, False, shown, "finite")
 
 
 def _behaviour(bench: Bench, progress: Report) -> Iterator[Finding]:

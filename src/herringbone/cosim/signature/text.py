@@ -19,12 +19,20 @@ _HOLDS = {Answer.NO: "does not hold", Answer.UNKNOWN: "is not clear"}
 def described(signature: Signature) -> list[str]:
     """What a part is in the coupling, line by line."""
     lines = [f"by trial steps of {1e6 * signature.step:g} us: {_kind(signature)}"]
-    lines.append(_RESTORES[signature.restores] if signature.repeats else "no step can be repeated")
+    lines.append(_restoring(signature))
     passed = list(_passed(signature))
     lines += passed[:_MOST]
     if len(passed) > _MOST:
         lines.append(f"and {len(passed) - _MOST} more of these")
     return [*lines, *_rates(signature), *signature.notes]
+
+
+def _restoring(signature: Signature) -> str:
+    if not signature.repeats:
+        return "no step can be repeated"
+    if signature.restores is None and signature.kind is Kind.UNKNOWN:
+        return "whether it saves its state is not known"
+    return _RESTORES[signature.restores]
 
 
 def _rates(signature: Signature) -> Iterator[str]:
