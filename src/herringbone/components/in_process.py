@@ -63,6 +63,7 @@ def part_variables(component: str) -> Mapping[str, PartVariable]:
                 unit_dimension(variable.unit),
                 frozenset(variable.feedthrough) if variable.causality is Causality.OUTPUT else None,
                 rate=variable.rate if name == variable.name else "",
+                starts=variable.state,
             )
     for k, text in enumerate(declaration.texts):
         reference = declaration.size + k

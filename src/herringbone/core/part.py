@@ -39,6 +39,7 @@ class PartVariable:
         items: numbers of an enumeration by their names.
         own_unit: of a signal that is converted to SI units: its own unit, the factor and the
             offset; it is recorded in that.
+        starts: no input or parameter, but its value at the start may be set.
     """
 
     name: str
@@ -52,6 +53,7 @@ class PartVariable:
     array: str = ""
     items: tuple[tuple[str, int], ...] = ()
     own_unit: tuple[str, float, float] | None = None
+    starts: bool = False
 
     @property
     def is_real(self) -> bool:

@@ -7,6 +7,7 @@ import pytest
 from support.parts.fakes import FakePart
 
 import herringbone as hb
+from herringbone.components.in_process import part_variables
 from herringbone.core.wording import words_of_commands
 from herringbone.cosim.signature import Kind
 from herringbone.cosim.starting.speeds import unlike_inside
@@ -46,7 +47,7 @@ def test_shafts_that_turn_alike(speeds):
     assert not lines_of(*speeds)
 
 
-def lines_inside(inside, outside, unit="rad/s", kind=Kind.STATES_AND_FEEDTHROUGH):
+def lines_inside(inside, outside, unit="rad/s", kind=Kind.STATES_AND_FEEDTHROUGH, meets=()):
     """Of a part with a rotor behind its shaft, on a gear (both speeds [rad/s])."""
     part = FakePart("fly").real("flange.phi", "input", "rad").real("flange.w", "input", unit)
     part.real("rotor.speed", "parameter", "rad/s").real("inertia", "parameter", "kg.m2")
@@ -57,6 +58,8 @@ def lines_inside(inside, outside, unit="rad/s", kind=Kind.STATES_AND_FEEDTHROUGH
         kind=kind,
     )
     gear = FakePart("gear").real("w", "output", "rad/s")
+    for name in meets:
+        gear.real(name, "local", "rad/s", starts=True)
     gear.get = lambda names: [outside]
     joined = SimpleNamespace(source=1, output="w", target=0, input="flange.w")
     network = SimpleNamespace(parts=[part, gear], bodies=[0, 1], inputs=lambda p: [joined][p:])
@@ -70,10 +73,20 @@ def test_a_rotor_at_rest_inside_a_part_meets_a_gear_that_turns():
     assert line.startswith("fly: what is behind its shaft at flange.phi turns at 0 rad/s")
     assert "gear.w = 104.7 rad/s" in line
     assert '(values={"fly.rotor.speed": 104.7})' in line
-    assert "0 rad/s, by a start value of gear: it has no parameter in rad/s" in line
+    assert "0 rad/s, by a start value of gear: it declares none in rad/s" in line
     with words_of_commands():
         (line,) = lines_inside(0.01, FAST)
     assert "(--set fly.rotor.speed=104.7)" in line
+
+
+def test_a_start_value_of_what_a_shaft_meets_is_named():
+    (line,) = lines_inside(0.01, FAST, meets=["speed"])
+    assert line.endswith('or that of what it meets (values={"gear.speed": 0})')
+
+
+def test_states_of_own_parts_have_start_values():
+    found = [name for name, v in part_variables("rotating_inertia").items() if v.starts]
+    assert found == ["angle", "speed"]
 
 
 @pytest.mark.parametrize("inside", [FAST, 0.97 * FAST, math.nan])

@@ -107,6 +107,7 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
             v.type,
             array=v.name if v.dimensions and name != v.name else "",
             items=_items(v),
+            starts=v.causality in {None, "local", "output"} and v.initial == "exact",
         )
         for name, reference, v in _named(model)
     }

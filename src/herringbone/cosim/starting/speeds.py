@@ -19,7 +19,7 @@ _SLOW = 1.0
 """Speeds below are rest [rad/s]."""
 _OPPOSITE = 1e-6
 _SHOWN = 3
-"""Parameters that a line names."""
+"""Variables that a line names."""
 
 
 def unlike_speeds(network: Network) -> Iterator[str]:
@@ -80,12 +80,12 @@ def unlike_inside(network: Network) -> Iterator[str]:
 
 
 def _to_set(part: Part, speed: str) -> str:
-    """How a part is told its speed [rad/s]: by the parameters in that unit that it declares."""
-    known = [v.name for v in part.variables.values() if v.causality == "parameter"]
-    named = [name for name in known if part.variables[name].unit == _SPEED]
+    """How a part is told its speed [rad/s]: by what may be set in that unit at its start."""
+    known = [v for v in part.variables.values() if v.causality == "parameter" or v.starts]
+    named = [v.name for v in known if v.unit == _SPEED]
     if named:
         return " or ".join(setting(f"{part.name}.{name}", speed) for name in named[:_SHOWN])
-    return f"{speed} {_SPEED}, by a start value of {part.name}: it has no parameter in {_SPEED}"
+    return f"{speed} {_SPEED}, by a start value of {part.name}: it declares none in {_SPEED}"
 
 
 def _was_stepped(part: Part) -> bool:

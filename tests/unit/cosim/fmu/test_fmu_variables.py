@@ -67,6 +67,22 @@ def test_what_is_declared(tmp_path):
     assert [variables[kind].type for kind in KINDS] == list(KINDS)
 
 
+def test_what_has_a_start_value(tmp_path):
+    """No input or parameter, but settable before the start: `initial` is exact."""
+    more = "".join(
+        f'<Float64 name="{name}" valueReference="{41 + k}" causality="{causality}" {declared}/>'
+        for k, (name, causality, declared) in enumerate(
+            [
+                ("speed", "local", 'initial="exact" start="0"'),
+                ("share", "parameter", 'variability="fixed" initial="exact" start="0"'),
+                ("guess", "local", 'initial="approx" start="0"'),
+            ]
+        )
+    )
+    variables = read_variables(read_fmu(write(tmp_path, more=more)))
+    assert [name for name, v in variables.items() if v.starts] == ["speed"]
+
+
 def test_index_of_a_derivative_stands_inside():
     assert element_name("der(x)", (2,)) == "der(x[2])"
 
