@@ -26,17 +26,31 @@ def node_degrees(network: Network, degree: int) -> tuple[list[int], list[str]]:
         if inputs and not part.addresses.set_derivatives:
             notes.append(
                 f"{part.name} has no signal nodes: its inputs are held at their mean over a step "
-                "and its outputs interpolated, which makes the coupling second order in the step"
-                + _unless_direct(part, outputs)
+                "and its outputs interpolated, which makes the coupling "
+                + _order_of_held(part, inputs, outputs)
             )
     return found, notes
 
 
-def _unless_direct(part: Part, outputs: Sequence[str]) -> str:
-    """What feedthrough that nobody knows costs a part that may have states."""
-    if part.has_states is False or not any(part.variables[n].dependencies is None for n in outputs):
-        return ""
-    return ", or first order if it has states and passes inputs directly to its outputs"
+def _order_of_held(part: Part, inputs: Sequence[str], outputs: Sequence[str]) -> str:
+    """Order with a part whose inputs are held: what a mean passes directly is half a step late.
+
+    An element takes the value at the end.
+    """
+    second, first = "second order in the step", "first order in the step"
+    if part.has_states is False:
+        return second
+    passed = [part.variables[name].dependencies for name in outputs]
+    if not all(depends is None or depends.isdisjoint(inputs) for depends in passed):
+        direct = "as inputs pass directly to outputs"
+        if part.has_states:
+            return f"{first}, {direct}"
+        return f"{second}, or first order if it has states, {direct}"
+    if None in passed:
+        return (
+            f"{second}, or first order if it has states and passes inputs directly to its outputs"
+        )
+    return second
 
 
 def _has_output_nodes(part: Part, outputs: Sequence[str], degree: int) -> bool:
