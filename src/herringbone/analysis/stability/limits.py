@@ -50,6 +50,7 @@ class Stability(Facts):
         notes: algorithms that this system cannot have, and those that are not ranked.
         orders: of what stands for foreign parts, by name.
         fresh_instances: on how many of a foreign part it was tried, of those that save no state.
+        left_out: foreign parts for which nothing stands: of the whole, nothing is promised.
     """
 
     system: str
@@ -62,6 +63,7 @@ class Stability(Facts):
     notes: tuple[str, ...] = field(default=())
     orders: Mapping[str, int] = field(default_factory=dict)
     fresh_instances: Mapping[str, int] = field(default_factory=dict)
+    left_out: tuple[str, ...] = ()
 
     @property
     def recommended(self) -> Recommendation | None:

@@ -188,7 +188,7 @@ def stability_summary(found: Stability) -> dict[str, Any]:
                 "frequency": _number(limits.frequency),
                 "simulated_limit": limits.simulated_limit,
                 "residual": limits.residual,
-                "promised": limits.promised,
+                "promised": limits.promised and not found.left_out,
             }
             for limits in found.limits
         ],

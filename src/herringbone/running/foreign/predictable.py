@@ -26,6 +26,7 @@ class Predictable(NamedTuple):
         strangers: what stands for foreign parts.
         missing: lines on parts for which nothing stands.
         known: its limits that were found before.
+        left_out: names of these parts.
     """
 
     system: System
@@ -34,6 +35,7 @@ class Predictable(NamedTuple):
     strangers: Strangers
     missing: tuple[str, ...]
     known: KnownLimits
+    left_out: tuple[str, ...]
 
 
 @contextmanager
@@ -69,4 +71,5 @@ def predictable(
         else:
             started = speeding_up(without_missing(started, foreign)[0], foreign.strangers)
         known = KnownLimits(started, trials)
-        yield Predictable(exact, started, chosen.name, foreign.strangers, missing, known)
+        left_out = tuple(foreign.missing)
+        yield Predictable(exact, started, chosen.name, foreign.strangers, missing, known, left_out)

@@ -139,7 +139,8 @@ def stability_before(
         started=of.started,
         remember=of.known,
     )
-    return replace(found, notes=(*of.missing, *linear_at(of.strangers), *found.notes))
+    notes = (*of.missing, *linear_at(of.strangers), *found.notes)
+    return replace(found, notes=notes, left_out=of.left_out)
 
 
 def verdicts_before(

@@ -358,5 +358,6 @@ def test_the_rest_of_the_table_stands(kinds, tmp_path, capsys):
     found = json.loads(capsys.readouterr().out)
     assert "what is told is of the system without sensor" in found["notes"]
     assert "nothing is promised: sensor: the same steps give other outputs" in found["notes"][0]
+    assert not found["algorithms"][0]["promised"]
     whole = _limit(make_system(tmp_path, kinds, "2 inputs and 2 outputs"), Jacobi(1))
     assert found["algorithms"][0]["limit"] == pytest.approx(whole, rel=WITHIN)

@@ -19,6 +19,7 @@ from herringbone.analysis.stability.surrogates.identification import (
     missed_share,
     realised,
 )
+from herringbone.analysis.stability.surrogates.own_growth import not_its_own
 from herringbone.analysis.stability.surrogates.trials import MOST_LENGTHS, Trials
 from herringbone.core.declaring.variable import NODES
 from herringbone.core.part import PartVariable
@@ -190,8 +191,12 @@ class Surrogate:
         long = _LONG_TURNING if self._lab.turning else _LONG
         accurate = [fit for fit in found if fit.residual <= max(long, least)]
         best = max(accurate, key=lambda fit: fit.base)
-        self.base, self._fit_missed = best.base, best.residual
-        self.model = turning_freely(best.model, self._lab.turning)
+        model = turning_freely(best.model, self._lab.turning)
+        if why := not_its_own(model, self._trials, best.base):
+            if self.model is None:
+                self.why = why
+            return
+        self.model, self.base, self._fit_missed = model, best.base, best.residual
         if self.orders:
             self._see_what_it_follows(asked)
 

@@ -76,6 +76,22 @@ class Trials:
         loud, rest = self._loudest(h), self._run(np.zeros_like(inputs), h)
         return inputs, (self._run(loud * inputs, h) - rest) / loud
 
+    def pulse(self, steps: int) -> np.ndarray:
+        """Changes (steps, n) of all inputs at once, in the first step alone."""
+        found = np.zeros((steps, len(self._amplitudes)))
+        found[0] = self._amplitudes * _stirring(found.shape[1])[0]
+        return found
+
+    def answers(self, changes: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
+        """Changes of outputs, and outputs without (steps, m); raises Refused.
+
+        Args:
+            changes: (steps, n) of inputs, in their own units.
+            h: step [s].
+        """
+        rest = self._run(np.zeros_like(changes), h)
+        return self._run(changes / self._amplitudes, h) - rest, rest
+
     def fresh_signals(self, h: float, orders: int, *, rated: bool) -> tuple[np.ndarray, np.ndarray]:
         """The same with derivatives of inputs up to an order, and with rates of outputs.
 
