@@ -196,7 +196,9 @@ def _with_surrogates(
             except HerringboneError as error:
                 raise _UnknownError(str(error)) from error
         loaded = speeding_up(turned_back(under_load(system)), found.strangers)
-        warning = warn_if_unstable(loaded, algorithm, step, t_end, strangers=found.strangers)
+        warning = warn_if_unstable(
+            loaded, algorithm, step, t_end, strangers=found.strangers, start=system
+        )
     if not warning and (ended := policy().trials_ended):
         raise _UnknownError(f"no more trials of {', '.join(ended)} are made")
     return warning

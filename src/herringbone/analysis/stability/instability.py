@@ -1,16 +1,14 @@
 """Before a run: one line if its step is unstable, or stable by models of other speeds alone."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.growth import GROWTH, Growth
 from herringbone.analysis.stability.linear_parts import (
     NO_STRANGERS,
-    Member,
     Strangers,
     linear_network,
+    network_at_start,
 )
 from herringbone.analysis.stability.surrogates.operating_point import where
 from herringbone.analysis.stability.surrogates.stand_in import StandIn
@@ -19,7 +17,6 @@ from herringbone.core import HerringboneError, Instance
 from herringbone.core.energy_report import hertz
 from herringbone.core.wording import percent
 from herringbone.cosim.algorithms import Algorithm
-from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System
 
 _SHORTER, _ALIKE = 8.0, 0.1
@@ -37,24 +34,26 @@ def warn_if_unstable(
     step: float,
     duration: float = np.inf,
     strangers: Strangers = NO_STRANGERS,
+    start: System | None = None,
 ) -> str | None:
     """One line if an algorithm is unstable at a step, or None; one matrix at mean stiffness.
 
     Of a stable one a line where models of foreign parts are of another speed than that of the run.
 
     Args:
-        system: as it is started.
+        system: where it is linear, own parts under load.
         algorithm: coupling algorithm.
         step: macro step [s].
         duration: of the run [s].
         strangers: what stands for foreign parts.
+        start: the system as the run starts; None: it starts where it is linear.
 
     Returns None also where nothing can be said: nothing stands for a foreign part, or it stands
     too far from it, or a mesh is open at the start.
     """
     try:
         network, members = linear_network(system, strangers=strangers)
-        turning = _other_speeds(network, members, strangers)
+        turning = _other_speeds(start or system, strangers)
         amplification = Amplification(network, members, algorithm)
         growth = amplification.growth(step)
     except HerringboneError:
@@ -76,13 +75,14 @@ def warn_if_unstable(
     )
 
 
-def _other_speeds(network: Network, members: Sequence[Member], strangers: Strangers) -> str | None:
+def _other_speeds(start: System, strangers: Strangers) -> str | None:
     """A line where parts are linear at the speeds that they declare, and the run starts at others.
 
     Args:
-        network, members: see `linear_network`, as they are at the start.
+        start: the system as the run starts.
         strangers: what stands for foreign parts.
     """
+    network, members = network_at_start(start, strangers)
     found = []
     for target, member in enumerate(members):
         if not isinstance(member, StandIn) or strangers[member.name].at_start:

@@ -82,6 +82,15 @@ def _frozen(
     system: System, strangers: Strangers, stiffness: Callable[[np.ndarray], float]
 ) -> tuple[Network, list[Member]]:
     """See `linear_network`; `stiffness` chooses from the stiffnesses of a mesh over its period."""
+    network, members = network_at_start(system, strangers)
+    for member in members:
+        if isinstance(member, Instance) and member.component.freeze:
+            member.component.freeze(member, stiffness)
+    return network, members
+
+
+def network_at_start(system: System, strangers: Strangers) -> tuple[Network, list[Member]]:
+    """See `linear_network`; with laws as they are, so that meshes may be open."""
     own = _own_instances(system, strangers)
     members: list[Member] = [
         StandIn(strangers[spec.name]) if spec.name in strangers else own[spec.name]
@@ -90,9 +99,6 @@ def _frozen(
     parts = [InProcessPart(m) if isinstance(m, Instance) else m.part for m in members]
     network = build_network(system, parts)
     _propagate(network, members)
-    for member in members:
-        if isinstance(member, Instance) and member.component.freeze:
-            member.component.freeze(member, stiffness)
     return network, members
 
 
