@@ -33,7 +33,7 @@ pytestmark = needs_compiler
 FORCES = ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]
 LARGEST = 300_000
 """Bytes of an FMU with all platforms, its resources aside: the limit that the project sets."""
-BEYOND = {"gear_mesh": 336_500, "gearbox": 637_500, "test_rig": 663_000}
+BEYOND = {"gear_mesh": 337_500, "gearbox": 641_000, "test_rig": 668_500}
 """What misses it, by 12 %, and twice: the law of single teeth takes 14 kB per platform, and the
 slopes of an energy what systems missed it by before. Kernels that tell the motion alone take 3 to
 4 kB of systems per platform, and halve the time of their right-hand side. Bearings that may stand
@@ -42,7 +42,9 @@ on rigid ground take 0.7 kB per platform, forces that are projected onto the mod
 per platform, and makes them two to five times as fast: a third of it is its step, vectorised, a
 third what finds modes and makes matrices when parameters are known, the rest Runge-Kutta by a
 tolerance, beside that of a micro step, and constants. Steps that leave all as it was if they fail,
-and directional derivatives of the start, take 1.4 kB per platform."""
+and directional derivatives of the start, take 1.4 kB per platform. Teeth that enter on either end
+of their path take 0.6 kB of the gear mesh and 2.6 kB of the rig in all, states that go on with the
+same bits in an instance of other parameters 0.3 and 2.3 kB."""
 DRAWN = 4
 """Components whose FMUs are built for all platforms, and one system; all if EVERY_FMU is set."""
 
