@@ -10,7 +10,12 @@ from matplotlib.transforms import blended_transform_factory
 
 from herringbone.analysis.asked import mesh_forces
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
-from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
+from herringbone.analysis.figures.spectra import (
+    FEWEST_SAMPLES,
+    PADDING,
+    amplitude_spectrum,
+    mesh_orders,
+)
 from herringbone.plotting.style import COLOURS, HALF_STYLE, MARKER_COLOUR, depths, draw_line
 from herringbone.result.result import TIME, Result
 
@@ -22,8 +27,6 @@ MM = 1e3
 """Of SI lengths and velocities, as they are shown."""
 DECADES = 3.5
 """Range of amplitudes in a spectrum."""
-PADDING = 4
-"""Of spectra: without it, lines between two bins are drawn up to 15 % low."""
 _CLOSE_UP_SHARE, _CLOSE_UP_ROWS = 0.05, 100
 _MOST_MARKS = 9
 _FEW_BINS = 60

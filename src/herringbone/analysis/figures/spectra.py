@@ -18,6 +18,8 @@ from herringbone.core import ParameterError
 
 FEWEST_SAMPLES = 8
 """A shorter signal has no meaningful spectrum."""
+PADDING = 4
+"""Of spectra whose peaks are read: without it, lines between two bins are up to 15 % low."""
 
 
 class Spectrum(NamedTuple):

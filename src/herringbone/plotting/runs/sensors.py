@@ -7,9 +7,14 @@ from matplotlib.figure import Figure
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.analysis.figures.sensing.sensors import SensorFigures, sensor_figures
 from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor
-from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
+from herringbone.analysis.figures.spectra import (
+    FEWEST_SAMPLES,
+    PADDING,
+    amplitude_spectrum,
+    mesh_orders,
+)
 from herringbone.core import ParameterError
-from herringbone.plotting.panels import DECADES, MM, PADDING, headline
+from herringbone.plotting.panels import DECADES, MM, headline
 from herringbone.plotting.style import (
     COLOURS,
     MARKER_COLOUR,

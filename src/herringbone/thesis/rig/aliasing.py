@@ -8,7 +8,7 @@ import pandas as pd
 
 from herringbone.analysis.figures.sensing.plateaus import plateaus
 from herringbone.analysis.figures.sensing.velocity_sensor import VelocitySensor, sensor_velocity
-from herringbone.analysis.figures.spectra import amplitude_spectrum, mesh_frequency
+from herringbone.analysis.figures.spectra import PADDING, amplitude_spectrum, mesh_frequency
 from herringbone.core.declaring.units import R_MIN
 from herringbone.result.result import TIME
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
@@ -23,8 +23,6 @@ _UNITS = {"speed": "r/min", "frequency": "Hz", "shows_at": "Hz", "amplitude": "m
 _FILTERS = {"no filter": False, "anti-alias filter": True}
 _LIFT = 0.045
 """Of every second mark: neighbours do not cover each other."""
-_PADDING = 4
-"""Times the length of a record: peaks at most 1 % low."""
 _SETTLING = 0.3
 """Share of a plateau."""
 
@@ -44,7 +42,7 @@ def compute() -> Outcome:
             record = sensor.measure(velocity, step)
             at = time[0] + record.time
             own = record.velocity[(at >= begin) & (at <= plateau.end)]
-            found = amplitude_spectrum(own, 1.0 / sensor.sampling_hz, padding=_PADDING)
+            found = amplitude_spectrum(own, 1.0 / sensor.sampling_hz, padding=PADDING)
             speed = round(R_MIN * plateau.speed)
             parts += [(speed, words, f, _MM * a)
                       for f, a in zip(found.frequency, found.amplitude, strict=True)]  # fmt: skip
