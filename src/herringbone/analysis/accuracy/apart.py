@@ -62,9 +62,8 @@ def differences(
     found = {}
     for name, columns in groups.items():
         own = [place[column] for column in columns]
-        if varies[own].any() and spread[own].max() > max(
-            least, _CONSTANT * np.abs(theirs[:, own]).max()
-        ):
+        size = np.abs(theirs[:, own]).max(initial=0.0)
+        if spread[own].max(initial=0.0) > max(least, _CONSTANT * size):
             found[name] = relative_error(ours[:, own], theirs[:, own])
     off = np.sqrt(np.mean((ours - theirs) ** 2, axis=0))
     single = np.where(varies, off / np.where(varies, spread, 1.0), 0.0)

@@ -82,6 +82,8 @@ def _other_speeds(start: System, strangers: Strangers) -> str | None:
         start: the system as the run starts.
         strangers: what stands for foreign parts.
     """
+    if all(surrogate.at_start for surrogate in strangers.values()):
+        return None
     network, members = network_at_start(start, strangers)
     found = []
     for target, member in enumerate(members):
