@@ -89,7 +89,9 @@ def ending_of(run: Result, tolerance: float) -> Ending:
     length = float(own[-1] - own[0])
     per_turn = abs(speed) / (2.0 * math.pi)
     longer, unit = 0.0, (0, length)
-    known = list(_periods(run, speed)) or _of_records(run, records, own, tolerance)
+    known = list(_periods(run, speed)) or _of_records(
+        run, records, own, list(groups.values()), tolerance
+    )
     for meshes, period in known:
         whole = math.floor(length / period)
         if meshes == 1 and whole:
@@ -132,12 +134,16 @@ def _periods(run: Result, speed: float) -> Iterator[tuple[int, float]]:
 
 
 def _of_records(
-    run: Result, records: np.ndarray, time: np.ndarray, tolerance: float
+    run: Result,
+    records: np.ndarray,
+    time: np.ndarray,
+    groups: Sequence[Sequence[int]],
+    tolerance: float,
 ) -> list[tuple[int, float]]:
     """The same where no teeth are known; meshes are 0."""
     if not steady_part(run).steady:
         return []
-    return [(0, t) for t in repeating(records, time, list(_places(run).values()), tolerance)]
+    return [(0, t) for t in repeating(records, time, groups, tolerance)]
 
 
 def _doubt(records: np.ndarray) -> float:

@@ -46,11 +46,12 @@ def following_speed(
     given = np.zeros_like(fixed)
     given[:, 0] = per_mean
     along = solved(given)
+    speed = state.orbit.response.speed
+    balance = Balance(state.structure.problem, state.orbit.resolved, state.motion)
     (above, more), (below, less) = (
-        _held_at(state, rows, (1.0 + share) * state.orbit.response.speed)
-        for share in (_STEP, -_STEP)
+        _held_at(balance, state, rows, (1.0 + share) * speed) for share in (_STEP, -_STEP)
     )
-    apart = 2.0 * _STEP * state.orbit.response.speed
+    apart = 2.0 * _STEP * speed
     lacking = (more - less)[unknown] / apart
     follows = (above - below) / apart + inner(fixed, lacking)
     return fixed + along * (follows / (1.0 - inner(along, lacking)))
@@ -66,10 +67,11 @@ def _speed_per_mean(state: SteadyState, unknown: np.ndarray) -> np.ndarray | Non
     return found if (parts > _NONE * abs(orbit.response.speed)).any() else None
 
 
-def _held_at(state: SteadyState, rows: Rows, speed: float) -> tuple[float, np.ndarray]:
+def _held_at(
+    balance: Balance, state: SteadyState, rows: Rows, speed: float
+) -> tuple[float, np.ndarray]:
     """The level, and what is lacking (values, harmonics), at fixed harmonics and a held speed."""
     orbit = state.orbit
-    balance = Balance(state.structure.problem, orbit.resolved, state.motion)
     held, lacking = balance.lacking(orbit.channels, orbit.response.orders, speed)
     values = held.response.outputs(rows, held.q, held.channels)
     return level_of(values), lacking

@@ -10,7 +10,7 @@ Newton's are, see `harmonic_balance.krylov`. J holds the speed; where r decides 
 `following_speed`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -126,23 +126,26 @@ def _adjoint(state: SteadyState, columns: Sequence[str]) -> _Adjoint:
     alternating = values.copy()
     alternating[:, 0] = 0.0
     slope = np.einsum("ck,cuk->uk", alternating, gains.conj()) / (len(columns) * size)
-    solved = partial(_solved, state, found)
+    solved = _adjoint_solver(state, found)
     fixed = solved(slope)
     whole = following_speed(state, rows, found.unknown, fixed, solved)
     return _Adjoint(size, found.unknown, whole)
 
 
-def _solved(state: SteadyState, found: Bent, given: np.ndarray) -> np.ndarray:
-    """The solution (unknowns, harmonics) of the adjoint equations at a speed that is held."""
+def _adjoint_solver(state: SteadyState, found: Bent) -> Callable[[np.ndarray], np.ndarray]:
+    """What solves the adjoint equations (unknowns, harmonics) at a speed that is held."""
     orbit = state.orbit
     if state.meshes > 1:
-        return adjoint_by_families(orbit, found, given)
+        return partial(adjoint_by_families, orbit, found)
     count = orbit.response.orders.size // 2 + 1  # whose tangents the places tell apart
-    matrix = jacobian(orbit.response, found, count - 1)
-    solved = np.linalg.solve(matrix.T, _dual(given[:, :count]))
-    whole = np.zeros_like(given)
-    whole[:, :count] = _of_dual(solved, count)
-    return whole
+    matrix = jacobian(orbit.response, found, count - 1).T
+
+    def solved(given: np.ndarray) -> np.ndarray:
+        whole = np.zeros_like(given)
+        whole[:, :count] = _of_dual(np.linalg.solve(matrix, _dual(given[:, :count])), count)
+        return whole
+
+    return solved
 
 
 def _dual(values: np.ndarray) -> np.ndarray:
