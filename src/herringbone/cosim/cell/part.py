@@ -159,6 +159,13 @@ class CellPart:
         """Go to step mode; raises FmuError."""
         self._ask("exit_initialization")
 
+    def initialise(
+        self, start_time: float, stop_time: float, tolerance: float | None = None
+    ) -> None:
+        """Enter initialisation mode and leave it, by one message; raises FmuError."""
+        share = () if tolerance is None else (float(tolerance),)
+        self._ask("initialise", float(start_time), float(stop_time), *share)
+
     def failed(self) -> None:
         """A step failed: FMI then allows no call but fmi2FreeInstance."""
         self._failed = True

@@ -8,6 +8,7 @@ import numpy as np
 from herringbone.core import FmuError
 from herringbone.core.part import Part
 from herringbone.core.wording import option
+from herringbone.cosim.cell.part import CellPart
 from herringbone.cosim.cell.policy import Policy, policy
 from herringbone.cosim.loops.calls import (
     do_step,
@@ -47,6 +48,15 @@ def check_length(steps: int, longest: int | None) -> None:
         raise Refused(f"it takes a run of {steps} steps, {longest} are allowed")
 
 
+def _initialise(part: Part, start: float, stop: float, tolerance: float | None) -> None:
+    """Where a part is in a cell, by one message: there may be hundreds of instances."""
+    if isinstance(part, CellPart):
+        part.initialise(start, stop, tolerance)
+    else:
+        part.enter_initialization(start, stop, tolerance)
+        part.exit_initialization()
+
+
 class Trial:
     """An initialised part at its start time.
 
@@ -83,8 +93,7 @@ class Trial:
         self._inputs_at, self._outputs_at = self._inputs.ctypes.data, self._outputs.ctypes.data
         self._saved: dict[int, float] = {}
         try:
-            part.enter_initialization(start_time, stop_time, tolerance)
-            part.exit_initialization()
+            _initialise(part, start_time, stop_time, tolerance)
         except FmuError:
             part.close()
             raise

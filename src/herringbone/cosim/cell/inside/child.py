@@ -152,6 +152,11 @@ class Server:
                 self._functions[number][function] = address
         return [bool(address) for address in at]
 
+    def _initialise(self, number: int, *experiment: float) -> None:
+        """Enter initialisation mode and leave it."""
+        self._parts[number].enter_initialization(*experiment)
+        self._parts[number].exit_initialization()
+
     def _terminate(self, number: int) -> None:
         self._parts[number].terminate()
 
