@@ -28,6 +28,9 @@ from .running.own_master import start_values as start_values
 from .scenes import Ask as Ask
 from .scenes import Scene as Scene
 from .studies.api import sweep as sweep
+from .studies.evaluators.settled import Settled as Settled
+from .studies.evaluators.steady import Steady as Steady
+from .studies.evaluators.transient import Transient as Transient
 from .studies.exporting import export as export
 from .studies.planning.plan import Plan as Plan
 from .studies.planning.plan import plan as plan

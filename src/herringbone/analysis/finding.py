@@ -1,6 +1,5 @@
 """What a test of a contract found."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -35,10 +34,6 @@ class Finding:
     def holds(self) -> bool:
         """False if the contract is broken."""
         return self.verdict is not Verdict.FAILS
-
-
-Report = Callable[[str], None]
-"""Is called with the name of the test that begins."""
 
 
 def judged(test: str, holds: bool, measured: str, limit: str) -> Finding:

@@ -7,12 +7,11 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from herringbone.commands.output import say
+from herringbone.core.process.telling import Tell
 from herringbone.cosim.cell.policy import policy
 
 _NOT_ASKED = frozenset({"command", "debug", "fresh", "json", "output"})
 """Options that decide how an answer is shown, or that none is known."""
-Tell = Callable[[str], None]
-"""Called with lines on how an answer was found, which are part of it."""
 
 
 class Told(NamedTuple):

@@ -2,13 +2,13 @@
 
 import argparse
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from herringbone.commands.answers import Tell, Told, answered
+from herringbone.commands.answers import Told, answered
 from herringbone.commands.checking import flange
 from herringbone.commands.options import (
     add_cells,
@@ -22,6 +22,7 @@ from herringbone.commands.options import (
 from herringbone.commands.output import check_writable, say, show, written_into
 from herringbone.core import ParameterError
 from herringbone.core.places.files import write_whole
+from herringbone.core.process.telling import Tell
 from herringbone.running.operating.one_step import check_asked
 
 if TYPE_CHECKING:
@@ -90,30 +91,21 @@ def _answer(options: argparse.Namespace) -> str:
 
 def _predicted(options: argparse.Namespace, panels: list["Panel"], tell: Tell) -> Told:
     """What is predicted, of one step or of all; the panels of an atlas are added."""
-    from tqdm import tqdm  # noqa: PLC0415
-
     from herringbone.running.operating.stability import fixed_steps, known_before  # noqa: PLC0415
     from herringbone.running.prepared import Wishes  # noqa: PLC0415 (numba)
+    from herringbone.running.reporting.progress import counted  # noqa: PLC0415
 
     algorithms = fixed_steps(options.algorithm or ())
     wishes = Wishes(**given_by(options), replace_parts=replacements(options))
-    bar = tqdm(unit=" matrices", disable=None)
-
-    def show(algorithm: str) -> None:
-        bar.set_description(algorithm, refresh=False)
-        bar.update()
-
     at = operating_point(options)
     known = known_before(options.system, options.scene, at["speed"], at["torque"], wishes, tell)
-    with bar, known as found:
+    with known as found, counted(None, "matrices") as show:
         if options.step is not None:
             return _of_step(found, algorithms, options.step, show)
         return _of_all_steps(found, algorithms, options, panels, show)
 
 
-def _of_step(
-    of: "Predictable", algorithms: Sequence["Algorithm"], step: float, show: Callable[[str], None]
-) -> Told:
+def _of_step(of: "Predictable", algorithms: Sequence["Algorithm"], step: float, show: Tell) -> Told:
     """What happens at one step [s], by algorithm."""
     from herringbone.running.operating.stability import verdicts_before  # noqa: PLC0415
 
@@ -126,7 +118,7 @@ def _of_all_steps(
     algorithms: Sequence["Algorithm"],
     options: argparse.Namespace,
     panels: list["Panel"],
-    show: Callable[[str], None],
+    show: Tell,
 ) -> Told:
     """Stable steps, bonds and a recommendation; see `_predicted`."""
     from herringbone.analysis.stability import report  # noqa: PLC0415

@@ -11,6 +11,7 @@ from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Role
 from herringbone.core.given import check_called, check_mapping, check_reference, check_several
 from herringbone.core.places.files import as_texts, is_file
+from herringbone.core.process.telling import Tell, untold
 from herringbone.core.wording import speaks_commands
 from herringbone.cosim.structure.system import System
 from herringbone.running.fitted import with_files
@@ -31,7 +32,7 @@ from herringbone.studies.evaluators.transient import Transient
 from herringbone.studies.keys import base_settings
 from herringbone.studies.leaner import leaner_notes
 from herringbone.studies.study import SET_POINTS, Study, Value, grid
-from herringbone.studies.sweep import Asked, Sweep, Told, computed
+from herringbone.studies.sweep import Asked, Sweep, computed
 from herringbone.studies.working.executors import Workers
 
 
@@ -57,7 +58,7 @@ def sweep(
     parquet: bool = False,
     output: str | Path | None = None,
     overwrite: bool = False,
-    told: Told = lambda ahead: None,
+    told: Tell = untold,
     progress: bool | Progress = False,
 ) -> Sweep:
     """Evaluate a system at many operating points; see `docs/sweeps.md`.
@@ -162,7 +163,7 @@ def _check_wishes(wishes: Wishes, evaluator: Evaluator, *, series: bool) -> None
 
 
 def _of_runs(what: str) -> ParameterError:
-    by = "--transient" if speaks_commands() else "evaluator=Transient()"
+    by = "--transient" if speaks_commands() else "evaluator=hb.Transient()"
     return ParameterError(
         f"{what}: of runs, and steady states are without; evaluate the points by runs ({by})"
     )

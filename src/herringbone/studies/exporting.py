@@ -1,12 +1,13 @@
 """Export of a system for other tools: an .ssp file, or one native FMU, as planned or whole."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from herringbone.core import ParameterError
 from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import GEARS
+from herringbone.core.process.telling import Tell, untold
 from herringbone.core.wording import option
 from herringbone.cosim.structure.system_file import short_name
 from herringbone.running.exporting.export import (
@@ -21,9 +22,6 @@ from herringbone.running.prepared import Named
 from herringbone.scenes import Scene
 from herringbone.studies.planning.plan import plan as planned
 from herringbone.studies.planning.text import plan_text
-
-Told = Callable[[str], None]
-"""Called with lines on what is exported."""
 
 
 def export(
@@ -49,7 +47,7 @@ def export(
     values: Mapping[str, float | str | Path] | None = None,
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: Named | None = None,
-    told: Told = lambda line: None,
+    told: Tell = untold,
 ) -> Path:
     """Export a system as .ssp file, or as one native FMU; see `docs/other_tools.md`.
 
@@ -144,7 +142,7 @@ def _refuse(why: str, given: Mapping[str, object]) -> None:
 
 
 def _planned(
-    system: str | Path, scene: str | Path | Scene | None, own: _Given, told: Told
+    system: str | Path, scene: str | Path | Scene | None, own: _Given, told: Tell
 ) -> Scene:
     """The scene with the model that a plan chose, which is told."""
     found = planned(system, scene=scene, for_fmu=True, **own._asdict())

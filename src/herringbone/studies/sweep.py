@@ -1,6 +1,6 @@
 """A study from its points to its table."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from itertools import compress
@@ -12,6 +12,7 @@ import pandas as pd
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.facts import Facts
 from herringbone.core.places.temporary import temporary_folder
+from herringbone.core.process.telling import Tell, untold
 from herringbone.studies.computing import Progress, compute, measured
 from herringbone.studies.evaluators.evaluator import Base, Evaluator
 from herringbone.studies.expected import Expected, check_room, expected, longest_period
@@ -96,17 +97,13 @@ class Sweep(Facts):
         }
 
 
-Told = Callable[[str], None]
-"""Called before points are computed, with what is ahead."""
-
-
 def computed(
     study: Study,
     base: Base,
     evaluator: Evaluator,
     asked: Asked,
     workers: Workers,
-    told: Told = lambda ahead: None,
+    told: Tell = untold,
     progress: Progress = lambda points: None,
 ) -> Sweep:
     """Compute what is missing of a study, and make its table.
@@ -115,7 +112,7 @@ def computed(
         study, base, evaluator: what is computed.
         asked: besides.
         workers: where.
-        told: see `Told`.
+        told: called with a line on what is ahead.
         progress: see `Progress`.
 
     Raises:

@@ -7,9 +7,10 @@ from pathlib import Path
 import pandas as pd
 
 from herringbone.core import ParameterError
+from herringbone.core.process.telling import Tell, untold
 from herringbone.studies.working.executors import Workers
 from herringbone.thesis.registry import chosen
-from herringbone.thesis.working import Done, Told, computed
+from herringbone.thesis.working import Done, computed
 
 STUDIES = ("thesis",)
 
@@ -51,7 +52,7 @@ def study(
     output: str | Path | None = None,
     workers: int | None = None,
     parquet: bool = False,
-    told: Told = lambda line: None,
+    told: Tell = untold,
 ) -> Report:
     """Compute the studies of the thesis; see `docs/thesis.md`.
 

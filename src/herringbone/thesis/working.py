@@ -1,12 +1,13 @@
 """Entries are computed: those that are not there yet, each in one call, in several processes."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, as_completed
 from dataclasses import dataclass
 from time import perf_counter
 
 from herringbone.core import HerringboneError, one_line
 from herringbone.core.process.one_thread import one_blas_thread
+from herringbone.core.process.telling import Tell
 from herringbone.studies.working.executors import Workers, working
 from herringbone.thesis.entry import Entry, Outcome
 from herringbone.thesis.registry import ENTRIES
@@ -30,17 +31,13 @@ class Done:
     seconds: float = 0.0
 
 
-Told = Callable[[str], None]
-"""Called with a line on what is done or ahead."""
-
-
-def computed(entries: Sequence[Entry], workers: Workers, told: Told) -> list[Done]:
+def computed(entries: Sequence[Entry], workers: Workers, told: Tell) -> list[Done]:
     """Entries in their order; what is kept is not computed again.
 
     Args:
         entries: of the registry.
         workers: where.
-        told: see `Told`.
+        told: called with a line on each.
     """
     there = {e.name: Done(e, found) for e in entries if (found := read_outcome(e)) is not None}
     missing = sorted((e for e in entries if e.name not in there), key=lambda e: -e.seconds)
@@ -53,7 +50,7 @@ def computed(entries: Sequence[Entry], workers: Workers, told: Told) -> list[Don
     return [there[entry.name] for entry in entries]
 
 
-def _found(missing: Sequence[Entry], workers: Workers, told: Told) -> Iterator[Done]:
+def _found(missing: Sequence[Entry], workers: Workers, told: Tell) -> Iterator[Done]:
     """Entries as they come."""
     if not missing:
         return

@@ -21,8 +21,15 @@ def test_stability(capsys):
     assert found.limits[0].limit == told["algorithms"][0]["limit"]
     assert 'algorithm="jacobi:order=1" step=' in str(found)
     assert "jacobi:order=1" in repr(found)
-    (verdict,) = hb.stability("gearbox", algorithms=[ALGORITHM], step=STEP)
+    reached = []
+    (verdict,) = hb.stability(
+        "gearbox", algorithms=[ALGORITHM], step=STEP, progress=reached.append
+    )
     assert verdict.stable == (found.limits[0].limit > STEP)
+    assert all(name.startswith(ALGORITHM) for name in reached)
+    capsys.readouterr()
+    hb.stability("gearbox", algorithms=[ALGORITHM], step=STEP, progress=True)
+    assert f"{len(reached)} matrices" in capsys.readouterr().err
 
 
 def test_chart(tmp_path):

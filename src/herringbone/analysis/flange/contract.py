@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from herringbone.analysis.finding import Finding, Report, Verdict, judged, not_tested, remark
+from herringbone.analysis.finding import Finding, Verdict, judged, not_tested, remark
 from herringbone.analysis.flange.answers import delay, feedthrough, sign
 from herringbone.analysis.flange.bench import Bench, Diverged
 from herringbone.analysis.flange.extent import longest_of, tell_cost
@@ -24,6 +24,7 @@ from herringbone.analysis.flange.work import passivity
 from herringbone.core import FmuError
 from herringbone.core.declaring.roles import Role
 from herringbone.core.part import Part, is_signal_node
+from herringbone.core.process.telling import Tell, untold
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.signature import Kind, Laboratory, Signature, cost, find_signature
 from herringbone.cosim.signature.trial import NOT_TRIED
@@ -54,7 +55,7 @@ def check_flanges(
     step: float,
     flanges: Sequence[str] = (),
     longest: int | None = None,
-    progress: Report = lambda what: None,
+    progress: Tell = untold,
     content: Sequence[str] = (),
 ) -> list[Finding]:
     """Test a part against the contract of a role.
@@ -156,7 +157,7 @@ def _not_finite(lab: Laboratory, flanges: Sequence[Flange]) -> Iterator[Finding]
         yield judged(_NUMBERS, False, shown, "finite")
 
 
-def _behaviour(bench: Bench, progress: Report) -> Iterator[Finding]:
+def _behaviour(bench: Bench, progress: Tell) -> Iterator[Finding]:
     many = len(bench.flanges) > 1
     for flange in bench.flanges:
         for name, test in _OF_FLANGE:

@@ -15,7 +15,7 @@ from functools import cache
 
 import numpy as np
 
-from herringbone.analysis.finding import Finding, Report, judged, not_tested, remark
+from herringbone.analysis.finding import Finding, judged, not_tested, remark
 from herringbone.analysis.housing.behaviour import (
     SHORT,
     Behaviour,
@@ -29,6 +29,7 @@ from herringbone.core import Instance, ParameterError
 from herringbone.core.declaring.roles import Role
 from herringbone.core.declaring.units import base_exponents
 from herringbone.core.part import Part, PartVariable
+from herringbone.core.process.telling import Tell, untold
 from herringbone.cosim.signature.trial import Refused
 from herringbone.cosim.units import in_si_units
 
@@ -53,7 +54,7 @@ def check_housing(
     usual: float | None = None,
     step: float = STEP,
     longest: int | None = None,
-    progress: Report = lambda what: None,
+    progress: Tell = untold,
 ) -> list[Finding]:
     """Test a housing against the contract.
 

@@ -9,7 +9,7 @@ themselves, thousands of times. In the given system the mesh stiffness is frozen
 the prediction, so that a point off its line is an error of one of the two; two rotors are linear.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +24,7 @@ from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.components.registry import component, component_for
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.core.places.part_path import PartPath
+from herringbone.core.process.telling import Tell, untold
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.structure.system import PartSpec, System
 
@@ -38,8 +39,6 @@ _POWERS = {Quantity.STIFFNESS: 1.0, Quantity.DAMPING: 0.5}
 _FREQUENCY, _INERTIA, _DAMPING = 3000.0, 0.01, 0.02
 _HIGHEST = 1.25
 """Highest step that is run, over the predicted limit."""
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,7 @@ class Panel:
 def atlas(
     system: System,
     algorithms: Sequence[Algorithm] = ALGORITHMS,
-    progress: Progress = lambda _: None,
+    progress: Tell = untold,
 ) -> tuple[Panel, ...]:
     """Limits over bearing stiffness of a system, and over damping and mass ratio of two rotors.
 
@@ -162,7 +161,7 @@ def _panel(
     systems: Sequence[System],
     run_at: Sequence[float],
     algorithms: Sequence[Algorithm],
-    progress: Progress,
+    progress: Tell,
 ) -> Panel:
     predicted, simulated = {}, {}
     for algorithm in algorithms:

@@ -20,7 +20,6 @@ from herringbone.analysis.stability.recommendation import (
 from herringbone.analysis.stability.steps.clock_grid import clocks_of, common_steps
 from herringbone.analysis.stability.steps.simulated_limit import nonlinear_limit
 from herringbone.analysis.stability.steps.step_limits import (
-    Progress,
     StepLimits,
     step_limits,
 )
@@ -28,6 +27,7 @@ from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.facts import Facts
 from herringbone.core.process.activity import activity
+from herringbone.core.process.telling import Tell
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, Jacobi
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
@@ -99,7 +99,7 @@ def stability(
     *,
     tolerance: float = 1e-3,
     simulate: bool = False,
-    progress: Progress | None = None,
+    progress: Tell | None = None,
     strangers: Strangers = NO_STRANGERS,
     started: System | None = None,
     remember: Remember = lambda algorithm, simulated, find: find(),
@@ -177,7 +177,7 @@ def _found(
     system: System,
     algorithm: Algorithm,
     runs: System | None,
-    progress: Progress | None,
+    progress: Tell | None,
     strangers: Strangers,
 ) -> StepLimits:
     """Limits of a system's linear parts, and those of runs if it is given as these start."""

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from herringbone.analysis.finding import Finding, Report, Verdict, not_tested
+from herringbone.analysis.finding import Finding, Verdict, not_tested
 from herringbone.analysis.flange.contract import check_flanges
 from herringbone.analysis.housing.contract import STEP, usual_compliance
 from herringbone.commands.answers import Told
 from herringbone.commands.options import start_values
 from herringbone.core.declaring.roles import Role
+from herringbone.core.process.telling import Tell
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.housing import read_housing
 from herringbone.running.foreign.started import own_step, started, started_content
@@ -53,7 +54,7 @@ def told_of(options: argparse.Namespace) -> Told:
     return Told(f"{head}\n{_table(findings)}\n{said}", {**found, "tests": rows}, again=repeats)
 
 
-def _of_housing(options: argparse.Namespace, progress: Report) -> tuple[Tested, float]:
+def _of_housing(options: argparse.Namespace, progress: Tell) -> tuple[Tested, float]:
     """What tests of a housing find, and the step of the trials [s]."""
     step = options.step or STEP
     found = tested_housing(
@@ -68,7 +69,7 @@ def _of_housing(options: argparse.Namespace, progress: Report) -> tuple[Tested, 
     return found, step
 
 
-def _of_flanges(options: argparse.Namespace, progress: Report) -> tuple[Tested, float]:
+def _of_flanges(options: argparse.Namespace, progress: Tell) -> tuple[Tested, float]:
     """What tests of a motor, load or coupling find, whose trials are known; and their step [s]."""
     fmu, values = options.fmu, start_values(options.set, _SET)
     step = options.step or own_step(fmu)

@@ -4,9 +4,10 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from herringbone.commands.answers import Tell, Told, answered
+from herringbone.commands.answers import Told, answered
 from herringbone.commands.output import say, show
 from herringbone.core.places.files import is_folder
+from herringbone.core.process.telling import Tell
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:

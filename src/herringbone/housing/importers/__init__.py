@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from herringbone.core import ResourceError
+from herringbone.core.process.telling import Tell, untold
 from herringbone.core.reduction import BAND, TOLERANCE
 from herringbone.housing.files.reader import read_compliance
 from herringbone.housing.importers.dmig import read_dmig
@@ -39,7 +40,7 @@ def import_housing(
     most_modes: int,
     band_hz: float | None = None,
     tolerance: float | None = None,
-    progress: Callable[[str], None] = lambda what: None,
+    progress: Tell = untold,
 ) -> ModalHousing:
     """Import a housing.
 

@@ -1,7 +1,7 @@
 """Mass and stiffness matrices of a foreign program, and how they become a housing."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ import scipy.sparse as sp
 
 from herringbone.core import ResourceError
 from herringbone.core.declaring.roles import HALVES
+from herringbone.core.process.telling import Tell, untold
 from herringbone.core.reading.numbers import whole
 from herringbone.core.reading.texts import LARGEST_MODEL, read_text
 from herringbone.housing.importers.mode_set import make_frame, make_point
@@ -87,7 +88,7 @@ def housing_from_matrices(
     band_hz: float,
     tolerance: float,
     most_modes: int,
-    progress: Callable[[str], None] = lambda what: None,
+    progress: Tell = untold,
 ) -> ModalHousing:
     """Reduce matrices to a housing, in SI units and the gearbox frame.
 
@@ -154,7 +155,7 @@ def _without_seat_file(
     band_hz: float,
     tolerance: float,
     most_modes: int,
-    progress: Callable[[str], None],
+    progress: Tell,
 ) -> ModalHousing:
     if model.seat_input is None:
         raise ResourceError("where are the seats? Give --seats SEATS.toml, or a matrix (N, 12)")

@@ -16,7 +16,6 @@ Fundamentals of Structural Dynamics, 2nd ed., section 17.6.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -24,6 +23,7 @@ import numpy as np
 import scipy.linalg as la
 
 from herringbone.core import HerringboneError
+from herringbone.core.process.telling import Tell, untold
 from herringbone.housing.eigenmodes import Factorisation, Modes, eigenmodes
 from herringbone.housing.modal_model import SEAT_DOFS
 from herringbone.housing.reduction.bound import choose_modes, make_certificate
@@ -86,7 +86,7 @@ def reduce_model(
     band_hz: float,
     tolerance: float = 0.05,
     most_modes: int = 64,
-    progress: Callable[[str], None] = lambda what: None,
+    progress: Tell = untold,
 ) -> Reduction:
     """Reduce a finite-element model that is held (no rigid-body motion).
 
@@ -136,7 +136,7 @@ def _enough_modes(
     static: np.ndarray,
     factorisation: Factorisation,
     goal: Goal,
-    progress: Callable[[str], None],
+    progress: Tell,
 ) -> tuple[Modes, int, float]:
     """Modes, how many to keep, and the bound."""
     size, most = len(model.seats), goal.most_modes - len(SEAT_DOFS)

@@ -1,6 +1,5 @@
 """The parametric housing, from its dimensions to a modal model."""
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from datetime import date
 from importlib.metadata import version
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from herringbone.core import HerringboneError
+from herringbone.core.process.telling import Tell, untold
 from herringbone.housing.modal_model import ModalHousing
 from herringbone.housing.reduction.reduce import Reduction, reduce_model
 from herringbone.housing.welded.design import HousingDesign, ModeOptions, check_mesh_size
@@ -44,7 +44,7 @@ def build_housing(
     design: HousingDesign,
     *,
     mesh_size: float | None = None,
-    progress: Callable[[str], None] = lambda what: None,
+    progress: Tell = untold,
 ) -> BuiltHousing:
     """Mesh, assemble, solve and reduce a housing.
 

@@ -1,11 +1,12 @@
 """A system as what is known of its coupling before a run is predicted from it."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 from herringbone.analysis.stability.linear_parts import Strangers
+from herringbone.core.process.telling import Tell
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.system import System
 from herringbone.running.foreign.linear_start import turned_back, under_load
@@ -43,7 +44,7 @@ def predictable(
     system: str | Path | System,
     scene: str | Path | Scene | None,
     wishes: Wishes,
-    tell: Callable[[str], None],
+    tell: Tell,
 ) -> Iterator[Predictable]:
     """A system that predictions can be made of, as long as the context lasts.
 

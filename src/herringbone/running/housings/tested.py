@@ -6,12 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.finding import Finding, Report, Verdict
+from herringbone.analysis.finding import Finding, Verdict
 from herringbone.analysis.housing.contract import STEP, check_housing, repeats
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.caching.tried import tried_folder
 from herringbone.core.part import Part
+from herringbone.core.process.telling import Tell, untold
 from herringbone.cosim.cell.policy import policy
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.structure.system import Values
@@ -45,7 +46,7 @@ def tested_housing(
     static: np.ndarray | None = None,
     step: float = STEP,
     longest: int | None = None,
-    progress: Report = lambda what: None,
+    progress: Tell = untold,
 ) -> Tested:
     """What tests of a housing find, now or before.
 

@@ -1,6 +1,6 @@
 """What is known of a system's coupling before a run, by name."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +9,9 @@ from herringbone.analysis.stability import limits
 from herringbone.analysis.stability.limits import Stability
 from herringbone.analysis.stability.steps.step_verdict import StepVerdicts, step_verdicts
 from herringbone.analysis.stability.surrogates.operating_point import linear_at
+from herringbone.core.given import check_called
 from herringbone.core.process.one_thread import one_blas_thread
+from herringbone.core.process.telling import Tell
 from herringbone.cosim.algorithms import Algorithm, parse_algorithm, refuse_adaptive
 from herringbone.cosim.cell.policy import foreign_fmus_housed
 from herringbone.cosim.structure.system import System
@@ -18,12 +20,8 @@ from herringbone.running.operating.commanded import operated
 from herringbone.running.operating.one_step import check_asked
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes
+from herringbone.running.reporting.progress import counted
 from herringbone.scenes import Scene, Start
-
-Progress = Callable[[str], None]
-"""Called with the name of an algorithm, at every matrix of it."""
-Tell = Callable[[str], None]
-"""Called with lines on how an answer came about."""
 
 
 def stability(
@@ -44,7 +42,7 @@ def stability(
     call_deadline: float | None = None,
     longest_trial: int | None = None,
     most_trial_steps: int | None = None,
-    progress: Progress = lambda algorithm: None,
+    progress: bool | Tell = False,
 ) -> Stability | StepVerdicts:
     """Stable steps of coupling algorithms, bonds, and a recommended algorithm and step.
 
@@ -61,7 +59,7 @@ def stability(
         values, gear, housing, replace_parts: as in `herringbone.run`.
         in_process, call_deadline, longest_trial, most_trial_steps: of foreign FMUs, as in
             `herringbone.run`.
-        progress: see `Progress`.
+        progress: show a count of matrices, or what is called with the algorithm at each of them.
 
     Returns:
         What is known, or with `step` a verdict of each algorithm, with `stable`, `growth` and
@@ -71,6 +69,7 @@ def stability(
         HerringboneError: something about the input is wrong, or nothing can be predicted.
     """
     check_asked(step, simulate=simulate)
+    check_called("progress", progress)
     chosen = fixed_steps(algorithms)
     wishes = Wishes(
         values=values or {}, gear=gear, housing=housing, replace_parts=replace_parts or {}
@@ -80,11 +79,12 @@ def stability(
         one_blas_thread(),
         foreign_fmus_housed(in_process, call_deadline, longest_trial, most_trial_steps) as remarks,
         known_before(system, scene, speed, torque, wishes, told.append) as found,
+        counted(progress, "matrices") as show,
     ):
         if step is not None:
-            verdicts = verdicts_before(found, chosen, step, progress)
+            verdicts = verdicts_before(found, chosen, step, show)
             return StepVerdicts(verdicts, (*told, *verdicts.notes, *map(str, remarks)))
-        known = stability_before(found, chosen, tolerance, simulate, progress)
+        known = stability_before(found, chosen, tolerance, simulate, show)
         return replace(known, notes=(*told, *known.notes, *map(str, remarks)))
 
 
@@ -109,7 +109,7 @@ def known_before(
     Args:
         system, scene, speed, torque: see `stability`.
         wishes: over these.
-        tell: see `Tell`.
+        tell: called with lines on how the answer came about.
 
     Raises:
         HerringboneError: see `stability`.
@@ -125,7 +125,7 @@ def stability_before(
     algorithms: Sequence[Algorithm],
     tolerance: float,
     simulate: bool,
-    progress: Progress,
+    progress: Tell,
 ) -> Stability:
     """What is known of a predictable system; arguments as of `stability`."""
     found = limits.stability(
@@ -144,7 +144,7 @@ def stability_before(
 
 
 def verdicts_before(
-    of: Predictable, algorithms: Sequence[Algorithm], step: float, progress: Progress
+    of: Predictable, algorithms: Sequence[Algorithm], step: float, progress: Tell
 ) -> StepVerdicts:
     """What happens to a predictable system at one step [s]; arguments as of `stability`."""
     found = step_verdicts(of.system, algorithms, step, progress, of.strangers)

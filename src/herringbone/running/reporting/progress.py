@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from herringbone.core.process.activity import activity
+from herringbone.core.process.telling import Tell
 
 if TYPE_CHECKING:
     from tqdm import tqdm
@@ -64,3 +65,25 @@ def told(progress: bool | Progress, what: str) -> Iterator[Progress | None]:
         yield bar.show
     finally:
         bar.close()
+
+
+@contextmanager
+def counted(progress: bool | Tell | None, unit: str) -> Iterator[Tell]:
+    """What is called inside with the name of each of many pieces.
+
+    Args:
+        progress: of the caller; True: a count of them, None: only in a terminal, False: nothing.
+        unit: what they are.
+    """
+    if callable(progress):
+        yield progress
+        return
+    from tqdm import tqdm  # noqa: PLC0415 (many callers show none)
+
+    with tqdm(unit=f" {unit}", disable=None if progress is None else not progress) as bar:
+
+        def show(name: str) -> None:
+            bar.set_description(name, refresh=False)
+            bar.update()
+
+        yield show

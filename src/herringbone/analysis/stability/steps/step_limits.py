@@ -4,7 +4,7 @@ The spectral radius of the amplification matrix is scanned over the step, at min
 maximum mesh stiffness. Not covered: teeth that separate, and parametric excitation by the mesh.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -34,6 +34,7 @@ from herringbone.analysis.stability.steps.step_scan import (
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.components.registry import component
 from herringbone.core import ParameterError
+from herringbone.core.process.telling import Tell
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 
@@ -41,9 +42,6 @@ _BEYOND = 1.01
 _SCAN_OF_STRANGERS = 1.1
 _LARGEST_OF_STRANGERS = 1.0
 """Step [s] at which the scan of systems of foreign parts alone ends: these may be slow."""
-
-Progress = Callable[[str], None]
-"""Called after every matrix, with the name of the algorithm."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +92,7 @@ class StepLimits:
 def step_limits(
     system: System,
     algorithm: Algorithm,
-    progress: Progress | None = None,
+    progress: Tell | None = None,
     strangers: Strangers = NO_STRANGERS,
     *,
     again: bool = True,

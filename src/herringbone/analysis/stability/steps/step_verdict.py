@@ -16,10 +16,10 @@ from herringbone.analysis.stability.linear_parts import (
     linear_network,
 )
 from herringbone.analysis.stability.steps.clock_grid import clocks_of
-from herringbone.analysis.stability.steps.step_limits import Progress
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.core import ParameterError
 from herringbone.core.energy_report import Diagnosis, hertz
+from herringbone.core.process.telling import Tell
 from herringbone.core.wording import percent
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.network import Network
@@ -95,7 +95,7 @@ def step_verdicts(
     system: System,
     algorithms: Sequence[Algorithm],
     step: float,
-    progress: Progress,
+    progress: Tell,
     strangers: Strangers = NO_STRANGERS,
 ) -> StepVerdicts:
     """Verdicts of algorithms at a macro step.
@@ -129,7 +129,7 @@ def _verdict(
     networks: Mapping[MeshStiffness, tuple[Network, list[Member]]],
     algorithm: Algorithm,
     step: float,
-    progress: Progress,
+    progress: Tell,
     strangers: Strangers,
 ) -> StepVerdict:
     """Of one algorithm; arguments as of `step_verdicts`."""
