@@ -188,6 +188,15 @@ def is_signal_node(variables: Container[str], name: str) -> bool:
     return is_node(name) and signal_of(name) in variables
 
 
+def reals(part: Part, causality: str) -> list[str]:
+    """Names of a part's real variables of a causality, nodes of signals left out."""
+    return [
+        name
+        for name, v in part.variables.items()
+        if v.causality == causality and v.is_real and not is_signal_node(part.variables, name)
+    ]
+
+
 def has_nodes(part: Part, inputs: Sequence[str], degree: int) -> bool:
     """True if these inputs of a part take polynomial signals of that degree."""
     return degree == 0 or (

@@ -22,9 +22,7 @@ def test_stability(capsys):
     assert 'algorithm="jacobi:order=1" step=' in str(found)
     assert "jacobi:order=1" in repr(found)
     reached = []
-    (verdict,) = hb.stability(
-        "gearbox", algorithms=[ALGORITHM], step=STEP, progress=reached.append
-    )
+    (verdict,) = hb.stability("gearbox", algorithms=[ALGORITHM], step=STEP, progress=reached.append)
     assert verdict.stable == (found.limits[0].limit > STEP)
     assert all(name.startswith(ALGORITHM) for name in reached)
     capsys.readouterr()

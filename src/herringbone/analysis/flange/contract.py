@@ -23,7 +23,7 @@ from herringbone.analysis.flange.variables import Flange, asked, find_flanges
 from herringbone.analysis.flange.work import passivity
 from herringbone.core import FmuError
 from herringbone.core.declaring.roles import Role
-from herringbone.core.part import Part, is_signal_node
+from herringbone.core.part import Part, reals
 from herringbone.core.process.telling import Tell, untold
 from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.signature import Kind, Laboratory, Signature, cost, find_signature
@@ -80,7 +80,7 @@ def check_flanges(
         found, findings = find_flanges(part.variables, asked(flanges), FLANGES[role])
         part.enter_initialization(0.0, 1.0)
         part.exit_initialization()  # pythonfmu does not survive freeing what was not
-        inputs, outputs = (_reals(part, causality) for causality in ("input", "output"))
+        inputs, outputs = (reals(part, causality) for causality in ("input", "output"))
         start = np.array(part.get(inputs))
     finally:
         part.close()
@@ -108,14 +108,6 @@ def check_flanges(
         return [*findings, *_nothing(str(error), role)]
     except FmuError as error:
         return [*findings, judged("trial steps", False, str(error), "it starts and steps")]
-
-
-def _reals(part: Part, causality: str) -> list[str]:
-    return [
-        name
-        for name, v in part.variables.items()
-        if v.causality == causality and v.is_real and not is_signal_node(part.variables, name)
-    ]
 
 
 def _nothing(why: str, role: Role) -> list[Finding]:

@@ -42,10 +42,7 @@ def slowest_oscillation(network: Network, members: Sequence[Member]) -> float | 
         LinAlgError: the connections make a loop that has no solution.
     """
     given = [[c.input for c in network.inputs(p)] for p in range(len(members))]
-    taken = [
-        list(dict.fromkeys(c.output for c in network.connections if c.source == p))
-        for p in range(len(members))
-    ]
+    taken = [network.outputs(p) for p in range(len(members))]
     parts = [_linear(m, u, y) for m, u, y in zip(members, given, taken, strict=True)]
     a, b, c, d = (block_diag(*matrices) for matrices in zip(*parts, strict=True))
     joined = _joined(network, given, taken)

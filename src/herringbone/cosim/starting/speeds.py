@@ -113,8 +113,9 @@ def _unit(part: Part, c: Connection) -> str | None:
 def _torque(network: Network, number: int) -> float:
     """Torque of a part on both of its shafts [N m]; 0 if they are not opposite."""
     part = network.parts[number]
-    given = dict.fromkeys(c.output for c in network.connections if c.source == number)
-    torques = part.get([name for name in given if part.variables[name].unit == _TORQUE])
+    torques = part.get(
+        [name for name in network.outputs(number) if part.variables[name].unit == _TORQUE]
+    )
     if len(torques) != 2 or abs(sum(torques)) > _OPPOSITE * abs(torques[0]):
         return 0.0
     return abs(torques[0])

@@ -76,6 +76,10 @@ class Network:
         """Connections of doubles that feed a part."""
         return [c for c in self.connections if c.target == part]
 
+    def outputs(self, part: int) -> list[str]:
+        """Outputs of doubles of a part that others take, each once."""
+        return list(dict.fromkeys(c.output for c in self.connections if c.source == part))
+
     def with_slow(self, multiples: Mapping[str, int]) -> "Network":
         """The network with some bodies stepping once in a number of macro steps.
 

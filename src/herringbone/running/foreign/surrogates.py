@@ -259,6 +259,6 @@ def _refusal(part: Part, signature: Signature) -> str:
 def _connected(network: Network, number: int) -> tuple[list[str], list[str]]:
     """Connected inputs and outputs of a part, with the rates of these."""
     inputs = [c.input for c in network.inputs(number)]
-    outputs = list(dict.fromkeys(c.output for c in network.connections if c.source == number))
+    outputs = network.outputs(number)
     more = rates(network.parts[number], outputs)
     return inputs, list(dict.fromkeys([*outputs, *more]))

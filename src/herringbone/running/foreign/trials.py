@@ -6,7 +6,7 @@ from contextlib import AbstractContextManager
 import numpy as np
 
 from herringbone.core import FmuError
-from herringbone.core.part import Part, is_signal_node
+from herringbone.core.part import Part, reals
 from herringbone.core.process.activity import activity
 from herringbone.core.wording import option
 from herringbone.cosim.fmu.opening import has_further
@@ -71,7 +71,7 @@ def signature_of(
         step: of the trials [s].
         content: see `Laboratory`.
     """
-    inputs, outputs = (_reals(part, causality) for causality in ("input", "output"))
+    inputs, outputs = (reals(part, causality) for causality in ("input", "output"))
     if not has_further(part):
         return _unknown(
             inputs, outputs, step, f"it can be instantiated once only{_HERE % option('in_process')}"
@@ -128,14 +128,6 @@ def _others(outputs: Sequence[str], silent: Collection[str]) -> list[str]:
     if not found:
         raise FmuError(f"{', '.join(silent)}: not finite")
     return found
-
-
-def _reals(part: Part, causality: str) -> list[str]:
-    return [
-        name
-        for name, v in part.variables.items()
-        if v.causality == causality and v.is_real and not is_signal_node(part.variables, name)
-    ]
 
 
 def _unknown(inputs: list[str], outputs: list[str], step: float, why: str) -> Signature:

@@ -112,7 +112,7 @@ def _driving(spec: PartSpec, network: Network, number: int, step: float) -> list
     """Set points without which a part gives next to nothing; raises FmuError."""
     part = network.parts[number]
     given = [c.input for c in network.inputs(number)]
-    taken = list(dict.fromkeys(c.output for c in network.connections if c.source == number))
+    taken = network.outputs(number)
     h = own_step(spec.fmu) if part.one_step and spec.fmu else step
     if not has_further(part):
         raise FmuError("it can be instantiated once only, and runs in this process: no trials")

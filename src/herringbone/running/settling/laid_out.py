@@ -61,7 +61,7 @@ def _stranger(
         raise NoSettledStartError(f"{part.name} is {signature.kind} to trial steps{why}")
     number = network.parts.index(part)
     inputs = [c.input for c in network.inputs(number)]
-    taken = list(dict.fromkeys(c.output for c in network.connections if c.source == number))
+    taken = network.outputs(number)
     outputs = list(dict.fromkeys([*taken, *rates(part, taken)]))
     begin = start_inputs(make(), inputs) if inputs else np.empty(0)
     found = Stranger(part, make, signature, inputs, outputs, begin, _units(network, part))
