@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from support.gearing.gears import HELICAL, SPUR, THESIS, gear_pair
 
+from herringbone.benchmarks.slice_resolution import resolution_table
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.stiffness import slices
 from herringbone.gears.stiffness.coupled_slices import CoupledSliceMesh
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
-from herringbone.gears.stiffness.resolution import resolution_table
 from herringbone.gears.stiffness.slices import SliceMesh
 from herringbone.gears.stiffness.tooth_compliance import plane_modulus, tooth_compliance
 

@@ -3,7 +3,7 @@
 **Equilibrium** at a load F: sum of w dl = F with w (c + c_H(w)) = max(0, delta - gap), by Newton's
 method on delta for all phases and loads at once.
 
-**Resolution** (`resolution.resolution_table`), for the pair z = 27/81, m_n 3.5 mm, 20 deg, 30 deg,
+**Resolution** (`benchmarks.slice_resolution`), for the pair z = 27/81, m_n 3.5 mm, 20 deg, 30 deg,
 b 47.3 mm at the load of 2000 N m. Slices against 1920 slices; `false` is the largest error of a
 harmonic above the tenth, of the mean. Phases: what interpolation loses against 1024 phases.
 

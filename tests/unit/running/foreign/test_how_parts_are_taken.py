@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from support.parts.fakes import CallbackPart
 
+from herringbone.core.part import reals
 from herringbone.cosim.adapter import WithoutStates
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature.signature import Answer, Kind, Signature
 from herringbone.running.foreign.foreign_parts import _with_signature, alike
-from herringbone.running.foreign.trials import _reals
 
 
 class Derived(CallbackPart):
@@ -67,7 +67,7 @@ class Plate(CallbackPart):
 def test_an_output_that_is_called_as_a_node_is_one_of_the_part():
     """There is no signal `plate`: its reference was passed to the adapter as it was."""
     part = Plate()
-    outputs = _reals(part, "output")
+    outputs = reals(part, "output")
     assert outputs == ["plate.node1", "y"]
     found = Signature(
         ("u",), tuple(outputs), 1e-4, Kind.BODY, np.zeros((2, 1)), Answer.YES,
