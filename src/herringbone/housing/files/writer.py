@@ -4,13 +4,14 @@ import json
 import os
 import tempfile
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from herringbone.components.resources.flat_csv_text import flat_csv_text
 from herringbone.core import ResourceError
 from herringbone.housing.files.file_format import (
     COMPLIANCES,
@@ -87,7 +88,7 @@ def _texts(housing: ModalHousing) -> dict[str, str]:
         if (matrix := getattr(housing, attribute)) is not None:
             files[name] = compliance_text(matrix)
     if housing.gram is not None:
-        files[GRAM] = _table(
+        files[GRAM] = flat_csv_text(
             "mode 1, gram kg^-1.m2",
             ("mode", *_mode_names(housing)),
             ((n, *row) for n, row in enumerate(housing.gram, 1)),
@@ -98,7 +99,7 @@ def _texts(housing: ModalHousing) -> dict[str, str]:
 
 def compliance_text(matrix: np.ndarray) -> str:
     """A matrix (12, 12) of static or residual compliance [m/N] as the text of its file."""
-    return _table(
+    return flat_csv_text(
         "compliance m/N",
         ("point", "dof", *SEAT_COLUMNS),
         ((*dof, *row) for dof, row in zip(SEAT_DOFS, matrix, strict=True)),
@@ -111,7 +112,7 @@ def _mode_names(housing: ModalHousing) -> list[str]:
 
 def _modes_text(housing: ModalHousing) -> str:
     modes = zip(housing.kind, housing.frequency_hz, housing.damping_ratio, strict=True)
-    return _table(
+    return flat_csv_text(
         "mode 1, frequency_hz Hz, damping_ratio 1",
         ("mode", "kind", "frequency_hz", "damping_ratio"),
         ((n, *mode) for n, mode in enumerate(modes, 1)),
@@ -119,22 +120,11 @@ def _modes_text(housing: ModalHousing) -> str:
 
 
 def _shapes_text(housing: ModalHousing) -> str:
-    return _table(
+    return flat_csv_text(
         "shape kg^-1/2",
         ("point", "dof", *_mode_names(housing)),
         ((*dof, *row) for dof, row in zip(housing.dofs, housing.shapes, strict=True)),
     )
-
-
-def _table(units: str, header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
-    """A flat CSV text; numbers have as many digits as it takes to read them back exactly."""
-    lines = [f"# units: {units}", ",".join(header)]
-    for row in rows:
-        cells = (
-            v if isinstance(v, str) else repr(v if isinstance(v, int) else float(v)) for v in row
-        )
-        lines.append(",".join(cells))
-    return "\n".join(lines) + "\n"
 
 
 def _head(housing: ModalHousing, files: Mapping[str, str]) -> dict[str, Any]:

@@ -4,7 +4,6 @@ The damping ratios of a housing's modes stand in a file and have no variable of 
 they are called `HOUSING.damping_ratio` here.
 """
 
-import csv
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -12,7 +11,8 @@ from typing import NamedTuple
 from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.analysis.steady.structure import Structure
 from herringbone.components.registry import component
-from herringbone.core import ParameterError
+from herringbone.components.resources.flat_csv_text import with_scaled_column
+from herringbone.core import Column, ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.declaring.variable import Causality
 from herringbone.core.places.files import is_file
@@ -101,8 +101,8 @@ def _parameters(system: System) -> Iterator[tuple[str, str]]:
                 yield name, variable.unit
 
 
-def _housings(system: System) -> dict[str, Path]:
-    """Files of modes by housing."""
+def _housings(system: System) -> dict[str, tuple[Path, tuple[Column, ...]]]:
+    """Files of modes by housing, with their columns."""
     known, found = anatomy(system), {}
     for name in known.with_role(Role.HOUSING):
         column, folder = known.column(name, Quantity.MODES), known.parts[name].resources
@@ -110,31 +110,33 @@ def _housings(system: System) -> dict[str, Path]:
             continue
         part, variable = system.part(name), column.removeprefix(f"{name}.")
         texts = component(str(part.component)).declaration.texts
-        start = next(text.start for text in texts if text.name == variable)
-        file = folder / str(part.values.get(variable, start))
+        text = next(text for text in texts if text.name == variable)
+        file = folder / str(part.values.get(variable, text.start))
         if is_file(file):
-            found[name] = file
+            found[name] = file, text.columns
     return found
 
 
 def _moved(structure: Structure, name: str) -> Moved:
     system = structure.system
     part, _, variable = name.rpartition(".")
-    file = _housings(system).get(part) if variable == _RATIO else None
-    if file is None:
+    modes = _housings(system).get(part) if variable == _RATIO else None
+    if modes is None:
         value = value_at(system, name)
         if value == 0.0:
             raise ParameterError(f"{name} = 0: a sensitivity is of a parameter that is not zero")
         ends = _ends(system, name, value)
         larger, smaller = (_like(structure, system.with_values({name: end})) for end in ends)
         return Moved(value, larger, smaller, ends[0] - ends[1])
-    column = str(anatomy(system).column(part, Quantity.MODES))
+    file, columns = modes
+    parameter = str(anatomy(system).column(part, Quantity.MODES))
     sides = []
     for factor in _FACTORS:
         with temporary_folder() as folder:
             scaled = folder / file.name
-            scaled.write_text(_scaled(file, factor), encoding="utf-8")
-            sides.append(_like(structure, system.with_values({column: str(scaled)})))
+            text = with_scaled_column(file, columns, _RATIO, factor)
+            scaled.write_text(text, encoding="utf-8")
+            sides.append(_like(structure, system.with_values({parameter: str(scaled)})))
     larger, smaller = sides
     return Moved(1.0, larger, smaller, _FACTORS[0] - _FACTORS[1])
 
@@ -155,14 +157,3 @@ _FACTORS = (1.0 + STEP, 1.0 - STEP)
 
 def _like(structure: Structure, system: System) -> Structure:
     return Structure(system, structure, same_tangents=True)
-
-
-def _scaled(file: Path, factor: float) -> str:
-    """A file of modes with all damping ratios multiplied."""
-    lines = file.read_text(encoding="utf-8").splitlines()
-    head = next(k for k, line in enumerate(lines) if not line.startswith("#"))
-    names, *rows = csv.reader(lines[head:])
-    place = names.index(_RATIO)
-    for row in rows:
-        row[place] = repr(factor * float(row[place]))
-    return "\n".join([*lines[: head + 1], *map(",".join, rows)]) + "\n"
