@@ -7,9 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.figures.operating_point import steady_part
+from herringbone.analysis.asked import group
+from herringbone.analysis.figures.misfits.records import folded_from
+from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.remembered_figures import figure_of
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, spectral_lines
+from herringbone.core.frequencies import HIGHEST
 from herringbone.result.result import Result
 
 _SAME_LINE = 2.0
@@ -68,3 +71,20 @@ def largest_lines(
         if all(abs(line.frequency - other.frequency) > apart for other in kept):
             kept.append(line)
     return kept[:count]
+
+
+def group_lines(result: Result, name: str) -> list[tuple[ChannelLine, float | None]]:
+    """The largest spectral lines of a group of channels up to `HIGHEST`, with their mesh orders.
+
+    Nothing where the speed is not steady, or the channels have several units. Without a mesh there
+    are no orders, nor where its harmonics may show folded: which one a line is, records do not
+    tell then.
+    """
+    columns = group(result, name)
+    if not steady_part(result).steady or len({result.units[c] for c in columns}) != 1:
+        return []
+    mesh = None if folded_from(result) is not None else run_mesh_frequency(result)
+    return [
+        (line, line.frequency / mesh if mesh else None)
+        for line in largest_lines(result, columns, HIGHEST)
+    ]

@@ -3,10 +3,9 @@
 import textwrap
 from collections.abc import Iterable, Iterator
 
-from herringbone.analysis.asked import by_half, group, mesh_forces, shaft_torques, signal
-from herringbone.analysis.figures.channels import largest_lines, moments
+from herringbone.analysis.asked import by_half, mesh_forces, shaft_torques, signal
+from herringbone.analysis.figures.channels import group_lines, moments
 from herringbone.analysis.figures.flange_power import mean_powers
-from herringbone.analysis.figures.misfits.records import folded_from
 from herringbone.analysis.figures.operating_point import (
     power_balance,
     run_mesh_frequency,
@@ -18,12 +17,12 @@ from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.declaring.units import R_MIN
+from herringbone.core.frequencies import HIGHEST
 from herringbone.result.result import Result
 from herringbone.running.reporting.of_sensors import sensor_lines
 
 _MM = 1e3
 _READABLE = {"N": (1.0, "N"), "m/s": (_MM, "mm/s"), "m": (1e6, "um"), "N.m": (1.0, "N m")}
-_HIGHEST = 3000.0
 _LABEL = 20
 WIDTH = 100
 _FEELABLE = 1.0
@@ -160,22 +159,16 @@ def _seats(result: Result) -> Iterator[str]:
 
 def _spectral_lines(result: Result) -> Iterator[str]:
     """The largest lines of each channel group, each with the channel in which it is largest."""
-    mesh, part = run_mesh_frequency(result), steady_part(result)
-    if folded_from(result) is not None:  # which order a line is, records do not tell then
-        mesh = None
-    highest = min(_HIGHEST, 0.5 / part.sample_step) if part.sample_step else _HIGHEST
-    for name in result.channels if part.steady else ():
-        columns = group(result, name)
-        units = {result.units[column] for column in columns}
-        if len(units) != 1:
-            continue
-        si = units.pop()
-        factor, unit = _READABLE.get(si, (1.0, si))
+    step = steady_part(result).sample_step
+    highest = min(HIGHEST, 0.5 / step) if step else HIGHEST
+    for name in result.channels:
         label = f"{name.replace('_', ' ')}:"
-        for line in largest_lines(result, columns, _HIGHEST):
-            order = f" = {line.frequency / mesh:.2f} f_m" if mesh else ""
+        for line, order in group_lines(result, name):
+            si = result.units[line.column]
+            factor, unit = _READABLE.get(si, (1.0, si))
+            shown = "" if order is None else f" = {order:.2f} f_m"
             channel = ".".join(line.column.split(".")[-2:])
-            yield (f"{label:<{_LABEL}}{line.frequency:>7.1f} Hz{order:<12}"
+            yield (f"{label:<{_LABEL}}{line.frequency:>7.1f} Hz{shown:<12}"
                    f" {line.amplitude * factor:>8.3g} {unit} at {channel}")  # fmt: skip
             label = f"  (up to {highest:.0f} Hz)" if label.strip() else ""
 

@@ -7,8 +7,8 @@ dB re 1 pW. What the parts cannot answer is left out.
 from collections.abc import Iterator
 from typing import Any
 
-from herringbone.analysis.asked import by_half, group, mesh_forces, shaft_torques, signal
-from herringbone.analysis.figures.channels import largest_lines, moments
+from herringbone.analysis.asked import by_half, mesh_forces, shaft_torques, signal
+from herringbone.analysis.figures.channels import group_lines, moments
 from herringbone.analysis.figures.flange_power import mean_powers
 from herringbone.analysis.figures.operating_point import (
     has_figures,
@@ -24,9 +24,6 @@ from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.declaring.units import R_MIN
 from herringbone.result.result import Result
 from herringbone.running.reporting.of_sensors import sensor_values
-
-_HIGHEST = 3000.0
-"""Of spectral lines [Hz]."""
 
 
 def physical_results(result: Result) -> dict[str, Any]:
@@ -94,16 +91,12 @@ def _of_halves(result: Result, channel: str, axes: str) -> dict[str, dict[str, A
 
 def _lines(result: Result, name: str) -> list[dict[str, Any]]:
     """The largest spectral lines of a group of channels, with their mesh orders."""
-    columns = group(result, name)
-    if not steady_part(result).steady or len({result.units[c] for c in columns}) != 1:
-        return []
-    mesh = run_mesh_frequency(result)
     return [
         {
             "column": line.column,
             "frequency_Hz": line.frequency,
-            "mesh_order": line.frequency / mesh if mesh else None,
+            "mesh_order": order,
             "amplitude": line.amplitude,
         }
-        for line in largest_lines(result, columns, _HIGHEST)
+        for line, order in group_lines(result, name)
     ]

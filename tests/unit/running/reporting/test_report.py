@@ -235,3 +235,19 @@ def test_an_adaptive_run_is_reported_on_equidistant_records():
     assert "communication 1 us to 40 us, median 20 us, 1 taken back" in text
     assert uneven.summary()["steps"] == steps
     assert "steps" not in even.summary()
+
+
+def test_text_and_json_know_the_same_orders():
+    """Records every 2 ms tell 250 Hz; 450 Hz shows at 500 - 450 = 50 Hz, which is no order 0.11."""
+
+    def lines(result):
+        found = physical_results(result)["gearboxes"][""]["lines"]["bearing_force"]
+        return [(found_line["frequency_Hz"], found_line["mesh_order"]) for found_line in found]
+
+    fine, coarse = make_result(t_end=1.0), make_result(t_end=1.0, record_step=2e-3)
+    assert lines(fine)[0] == pytest.approx((450.0, 1.0), rel=1e-3)
+    assert numbers(line(summary_text(fine), "bearing force:"))[1] == 1.0
+    frequency, order = lines(coarse)[0]
+    assert frequency == pytest.approx(50.0, rel=1e-2)
+    assert order is None
+    assert "f_m" not in line(summary_text(coarse), "bearing force:")
