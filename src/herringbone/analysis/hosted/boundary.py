@@ -2,15 +2,15 @@
 
 import re
 from dataclasses import dataclass, replace
-from fnmatch import fnmatchcase
 from functools import cached_property
 
 from herringbone.analysis.anatomy import anatomy
-from herringbone.components.registry import COMPONENTS
+from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import ParameterError
 from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
-from herringbone.core.places.part_path import PartPath
+from herringbone.core.places.part_path import PartPath, find_columns
+from herringbone.core.places.wrong_column import meant_columns
 from herringbone.cosim.structure.system import PartSpec, System
 
 _INSIDE = {Role.GEAR_PAIR, Role.BEARING, Role.HOUSING}
@@ -41,6 +41,11 @@ class HostFlange:
     shaft: str = ""
 
 
+def mean_torque(flange: HostFlange) -> str:
+    """Name of the output: mean of the shaft's torque over the last communication step [N.m]."""
+    return f"{flange.name}.tau_mean"
+
+
 @dataclass(frozen=True)
 class Boundary:
     """A gearbox with what lies between it and the host.
@@ -50,12 +55,14 @@ class Boundary:
         flanges: its flanges.
         pair: path of the gear pair.
         wanted: what the host wants to see.
+        further: outputs `instance.variable` that its patterns mean.
     """
 
     system: System
     flanges: tuple[HostFlange, ...]
     pair: str
     wanted: Wanted
+    further: frozenset[str] = frozenset()
 
     def name(self, full: str) -> str:
         """What the host calls a variable `instance.variable`."""
@@ -112,9 +119,7 @@ class Boundary:
 
     def shows_output(self, full: str) -> bool:
         """True if an output `instance.variable` is an output of the FMU."""
-        if any(
-            fnmatchcase(full, p) or fnmatchcase(self.name(full), p) for p in self.wanted.outputs
-        ):
+        if full in self.further:
             return True
         at, _, variable = self.name(full).rpartition(".")
         if at in {f.name for f in self.flanges} and not variable.startswith("shaft_"):
@@ -152,7 +157,7 @@ def make_boundary(system: System, wanted: Wanted) -> Boundary:
     """A gearbox with shafts to the host.
 
     Raises:
-        ParameterError: the system has no flange of a name.
+        ParameterError: the system has no flange of a name, or no output that is asked for.
     """
     if unknown := sorted(set(wanted.given) - set(system.ports)):
         raise ParameterError(
@@ -179,4 +184,26 @@ def make_boundary(system: System, wanted: Wanted) -> Boundary:
             *((f.path, f"{f.shaft}.flange_b") for f in shafts),
         ),
     )
-    return Boundary(whole, tuple(flanges), pair, wanted)
+    boundary = Boundary(whole, tuple(flanges), pair, wanted)
+    return replace(boundary, further=_further(boundary))
+
+
+def _further(boundary: Boundary) -> frozenset[str]:
+    """Outputs that the host asks for, by name or by what it calls them; raises ParameterError."""
+    outputs = [
+        f"{part.name}.{v.name}"
+        for part in boundary.system.parts
+        for v in component(str(part.component)).declaration.outputs
+    ]
+    means = [mean_torque(f) for f in boundary.flanges if f.shaft]
+    known = {boundary.name(full): full for full in outputs}
+    known |= {name: name for name in (*outputs, *means)}
+    found: set[str] = set()
+    asked = find_columns(boundary.system.paths, list(known), boundary.wanted.outputs)
+    for pattern, own in asked.items():
+        if not own:
+            raise ParameterError(
+                f"no output matches '{pattern}'; {meant_columns(pattern, list(known))}"
+            )
+        found.update(known[name] for name in own)
+    return frozenset(found)

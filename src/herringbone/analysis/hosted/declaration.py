@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from herringbone.analysis.hosted.boundary import Boundary, HostFlange
+from herringbone.analysis.hosted.boundary import Boundary, HostFlange, mean_torque
 from herringbone.analysis.hosted.gear_data import texts_with_gear_data
 from herringbone.analysis.twin.composite_parts import (
     Parts,
@@ -186,7 +186,7 @@ def _outputs(boundary: Boundary) -> Iterator[Variable]:
         if f.shaft:
             motion = ("phi", "w") if f.given is Given.MOTION else ("w",)
             yield output(
-                f"{f.name}.tau_mean",
+                mean_torque(f),
                 "N.m",
                 f"mean of {f.name}.tau over the last communication step",
                 feedthrough=tuple(f"{f.name}.{q}" for q in motion),

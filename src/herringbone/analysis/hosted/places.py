@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from herringbone.analysis.hosted.boundary import Boundary, HostFlange
+from herringbone.analysis.hosted.boundary import Boundary, HostFlange, mean_torque
 from herringbone.analysis.hosted.declaration import (
     FLANK,
     INITIAL_SPEED,
@@ -134,7 +134,7 @@ class Places:
             impulse=index[f"{f.name}.impulse"],
             offset=index[offset(f)],
             lead=index.get(lead(f), -1),
-            tau_mean=index[f"{f.name}.tau_mean"],
+            tau_mean=index[mean_torque(f)],
             initial_torque=index[initial_torque(f)],
             end_phi=self.inside[f"{f.shaft}.flange_a.phi"],
             end_w=self.inside[f"{f.shaft}.flange_a.w"],
