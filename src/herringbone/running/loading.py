@@ -56,6 +56,11 @@ def load_system(reference: str | Path) -> tuple[System, Path]:
     return read_system(reference), find_system(reference)
 
 
+def system_and_folder(system: str | Path | System) -> tuple[System, Path]:
+    """As `load_system`; of a System itself the working folder, in which names are relative."""
+    return (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+
+
 def load_scene(folder: str | Path, scene: str | Path | Scene | None) -> Scene:
     """A scene by name or file; the system's default scene, or plain defaults if it has none.
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from herringbone.analysis.set_points import at_pinion
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
-from herringbone.running.loading import load_system, open_parts
+from herringbone.running.loading import open_parts, system_and_folder
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
 from herringbone.scenes import Scene
@@ -54,7 +54,7 @@ def start_values(
     Raises:
         HerringboneError: something about the input is wrong, or there is no steady rotation.
     """
-    structure = system if isinstance(system, System) else load_system(system)[0]
+    structure = system_and_folder(system)[0]
     wanted = dict(values or {})
     if speed is not None or torque is not None:
         wanted = {**at_pinion(structure, speed, torque), **wanted}
@@ -70,7 +70,7 @@ def connections(system: str | Path | System) -> tuple[Link, ...]:
     Raises:
         HerringboneError: the system is wrong, or an FMU in it cannot be opened.
     """
-    structure = system if isinstance(system, System) else load_system(system)[0]
+    structure = system_and_folder(system)[0]
     parts = open_parts(structure, "in-process")
     try:
         network = build_network(structure, parts)

@@ -12,7 +12,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.running.fitted import with_files
 from herringbone.running.housings.fmu_remarks import HousingRemarks
 from herringbone.running.housings.rigid_ground import driven_one_way
-from herringbone.running.loading import load_scene, load_system, with_options
+from herringbone.running.loading import load_scene, system_and_folder, with_options
 from herringbone.running.operating.lean import refuse_lean
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.pairs.impacts import with_impacts
@@ -87,7 +87,7 @@ def prepared(
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+    structure, folder = system_and_folder(system)
     w = wishes
     chosen = with_options(load_scene(folder, scene), w.t_end, w.record_step, w.start, w.values)
     if w.start_offset is not None:

@@ -15,7 +15,7 @@ from herringbone.core.process.telling import Tell, untold
 from herringbone.core.wording import speaks_commands
 from herringbone.cosim.structure.system import System
 from herringbone.running.fitted import with_files
-from herringbone.running.loading import load_scene, load_system, with_options
+from herringbone.running.loading import load_scene, system_and_folder, with_options
 from herringbone.running.operating.asked_tolerance import tolerance_notes
 from herringbone.running.operating.commanded import commanded, own_point, with_known_values
 from herringbone.running.operating.lean import changed_by
@@ -37,7 +37,7 @@ from herringbone.studies.working.executors import Workers
 
 
 def sweep(
-    system: str | Path,
+    system: str | Path | System,
     *,
     speed: Sequence[float] = (),
     torque: Sequence[float] = (),
@@ -64,7 +64,7 @@ def sweep(
     """Evaluate a system at many operating points; see `docs/sweeps.md`.
 
     Args:
-        system: name of a shipped system, folder with system.toml, or .ssp file.
+        system: name of a shipped system, folder with system.toml, .ssp file, or a System.
         speed: values of the speed set point that the system declares [rad/s].
         torque: of the torque set point [N m].
         vary: values by `instance.variable`, in SI units; all combinations are computed.
@@ -90,7 +90,9 @@ def sweep(
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    check_reference("system", system, "a name, a folder with system.toml, or an .ssp file")
+    if not isinstance(system, System):
+        taken = "a name, a folder with system.toml, an .ssp file, or a System"
+        check_reference("system", system, taken)
     check_mapping("values", values, '{"PART.VARIABLE": 1e-4}')
     check_mapping("vary", vary, '{"PART.VARIABLE": [1e-4, 2e-4]}')
     for name, several in {SPEED: speed, TORQUE: torque, **(vary or {})}.items():
@@ -106,7 +108,7 @@ def sweep(
     wishes = Wishes(t_end, record_step, start, as_texts(values), gear, housing, replace_parts or {})
     named = str(scene) if scene is not None else None
     base = Base(_found(system), named, wishes, str(Path.cwd()))
-    structure, folder = load_system(base.system)
+    structure, folder = system_and_folder(base.system)
     chosen_scene = load_scene(folder, named)
     known = with_known_values(structure, chosen_scene, wishes)
     chosen = evaluator or _suited(known, wishes)
@@ -177,8 +179,10 @@ def _told_pairs(system: System) -> str:
     return f"mesh frequency and orders of {pairs[0]}, groups of channels over {' and '.join(pairs)}"
 
 
-def _found(system: str | Path) -> str:
+def _found(system: str | Path | System) -> str | System:
     """A system as processes in other folders find it."""
+    if isinstance(system, System):
+        return system
     there = Path(system)
     return str(there.absolute()) if there.is_dir() or is_file(there) else str(system)
 

@@ -9,6 +9,7 @@ from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import GEARS
 from herringbone.core.process.telling import Tell, untold
 from herringbone.core.wording import option
+from herringbone.cosim.structure.system import System
 from herringbone.cosim.structure.system_file import short_name
 from herringbone.running.exporting.export import (
     chosen_platforms,
@@ -25,7 +26,7 @@ from herringbone.studies.planning.text import plan_text
 
 
 def export(
-    system: str | Path,
+    system: str | Path | System,
     output: str | Path | None = None,
     *,
     as_fmu: bool = False,
@@ -52,7 +53,7 @@ def export(
     """Export a system as .ssp file, or as one native FMU; see `docs/other_tools.md`.
 
     Args:
-        system: name of a shipped system, folder with system.toml, or .ssp file.
+        system: name of a shipped system, folder with system.toml, .ssp file, or a System.
         output: file; SYSTEM.ssp, SYSTEM.fmu, or for FMI 3 SYSTEM_fmi3.fmu if not given. A .ssv file
             with `as_fmu`: start values of the scene alone.
         as_fmu: one native FMU of the whole system.
@@ -84,7 +85,7 @@ def export(
     flanges = {gear: x for gear, x in zip(GEARS, (pinion, wheel), strict=True) if x is not None}
     switches = {"internals": internals, "nodes": nodes, "parameters": parameters, "me": me}
     own = _Given(values, gear, housing)
-    name = short_name(str(system))
+    name = system.name if isinstance(system, System) else short_name(system)
     if as_fmu:
         _refuse(
             f"of .ssp files; leave out {option('as_fmu')}",
@@ -142,7 +143,7 @@ def _refuse(why: str, given: Mapping[str, object]) -> None:
 
 
 def _planned(
-    system: str | Path, scene: str | Path | Scene | None, own: _Given, told: Tell
+    system: str | Path | System, scene: str | Path | Scene | None, own: _Given, told: Tell
 ) -> Scene:
     """The scene with the model that a plan chose, which is told."""
     found = planned(system, scene=scene, for_fmu=True, **own._asdict())

@@ -8,7 +8,7 @@ from pathlib import Path
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.places.files import beside, is_file
 from herringbone.running.content import digest_of_file
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.loading import load_scene, system_and_folder
 from herringbone.running.output.settings import settings_of
 from herringbone.running.prepared import prepared
 from herringbone.scenes import Start
@@ -45,7 +45,7 @@ def base_settings(base: Base, evaluator: Evaluator) -> dict[str, str]:
     """
     asked = replace(base.wishes, start=Start.REST.value, lean=True)
     with chdir(base.folder):
-        own = load_scene(load_system(base.system)[1], base.scene)
+        own = load_scene(system_and_folder(base.system)[1], base.scene)
         system, scene, _ = prepared(base.system, own, asked)
     start = own.start if base.wishes.start is None else base.wishes.start
     settings = settings_of(system, scene, (evaluator, start))

@@ -17,6 +17,7 @@ from support.studies import Cheap
 import herringbone as hb
 from herringbone.core import HerringboneError, ParameterError, ResourceError
 from herringbone.core.places.paths import module_path
+from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.studies.expected import longest_period
 from herringbone.studies.working import processes
 from herringbone.studies.working.chain import Done, Row
@@ -306,3 +307,19 @@ def test_a_variable_has_one_name_and_one_value():
         hb.sweep("test_rig", vary={damping: [0.03, 0.05], long: [0.2, 0.3]})
     with pytest.raises(ParameterError, match=f"{damping} is varied, and set besides"):
         hb.sweep("test_rig", vary={damping: [0.03, 0.05]}, values={damping: 0.2})
+
+
+def test_a_system_itself_is_swept_as_the_one_of_its_name(tmp_path, serial):
+    """Same content, same rows: in other processes, and of a folder that has them already.
+
+    A System has no folder of scenes, as everywhere: a file says which one.
+    """
+    log, scene = tmp_path / "log", find_system("gearbox") / "scenes" / "loaded.toml"
+    evaluator = Cheap(log=str(log))
+    wanted = {"speed": SPEEDS, "torque": TORQUES, "evaluator": evaluator, "scene": scene}
+    evaluated = []
+    for system in (read_system("gearbox"), "gearbox"):
+        found = hb.sweep(system, workers=2, output=tmp_path / "study", **wanted)
+        assert found.table.equals(serial)
+        evaluated.append(len(log.read_text().splitlines()))
+    assert evaluated[0] == evaluated[1]

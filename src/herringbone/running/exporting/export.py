@@ -117,7 +117,7 @@ def untested(platforms: Sequence[str]) -> list[str]:
 
 
 def ready(
-    system: str | Path, scene: str | Path | Scene | None, wishes: Wishes
+    system: str | Path | System, scene: str | Path | Scene | None, wishes: Wishes
 ) -> tuple[System, Scene]:
     """A system with all values that are to be exported, and the scene that gives them.
 
@@ -148,7 +148,7 @@ def written(file: Path) -> Iterator[None]:
 
 
 def export_ssp(
-    system: str | Path,
+    system: str | Path | System,
     file: str | Path,
     *,
     scene: str | Path | Scene | None = None,
@@ -170,7 +170,7 @@ def export_ssp(
     states only if it gets the folder of the unpacked file (OspSystemStructure.xml).
 
     Args:
-        system: name of a shipped system, folder with system.toml, or .ssp file.
+        system: name of a shipped system, folder with system.toml, .ssp file, or a System.
         file: the .ssp file to write.
         scene: name or file of a scene; the system's default if not given.
         step: communication step size [s]; shortened so that a whole number makes the end time. If
@@ -196,7 +196,8 @@ def export_ssp(
     step = parallel_step(structure) if step is None else step
     step = make_grid(chosen.t_end, step, step).step
     changed = scene is not None or any((values, gear, housing))
-    if late := told_late(system, structure, step, changed=changed):
+    reference = system.name if isinstance(system, System) else system
+    if late := told_late(reference, structure, step, changed=changed):
         _log.warning(late)
     own = [part for part in structure.parts if not part.foreign]
     if native:

@@ -17,7 +17,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.housing import ModalHousing, write_housing
 from herringbone.running.exporting.export import ready
 from herringbone.running.fitted import housings_of
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.loading import load_scene, system_and_folder
 from herringbone.running.operating.commanded import operated
 from herringbone.running.operating.lean import changed_by, lean_notes
 from herringbone.running.prepared import Wishes, prepared
@@ -37,7 +37,7 @@ class Leaner(NamedTuple):
 
 
 def ready_leaner(
-    system: str | Path, scene: str | Path | Scene | None, wishes: Wishes, folder: Path
+    system: str | Path | System, scene: str | Path | Scene | None, wishes: Wishes, folder: Path
 ) -> tuple[System, Scene, tuple[str, ...]]:
     """The system with all values, its scene, and states that keep their start values.
 
@@ -48,8 +48,7 @@ def ready_leaner(
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    folder_of = Path.cwd() if isinstance(system, System) else load_system(system)[1]
-    chosen = load_scene(folder_of, scene)
+    chosen = load_scene(system_and_folder(system)[1], scene)
     if not chosen.model:
         return *ready(system, chosen, wishes), ()
     whole, at = replace(chosen, model=Model()), chosen.operating

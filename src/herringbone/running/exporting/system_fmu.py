@@ -15,6 +15,7 @@ from herringbone.core.declaring.variable import Causality
 from herringbone.core.places.files import write_whole
 from herringbone.core.wording import option
 from herringbone.cosim.ssp.write import parameter_set
+from herringbone.cosim.structure.system import System
 from herringbone.fmi import interface
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model
@@ -28,7 +29,7 @@ _log = logging.getLogger(__name__)
 
 
 def export_fmu(
-    system: str | Path,
+    system: str | Path | System,
     file: str | Path,
     *,
     outside: Sequence[str] = (),
@@ -54,7 +55,8 @@ def export_fmu(
     for an FMU that was exported at another operating point. It says nothing of resource files.
 
     Args:
-        system: name of a shipped system, folder with system.toml, or .ssp file; no foreign FMUs.
+        system: name of a shipped system, folder with system.toml, .ssp file, or a System; no
+            foreign FMUs.
         file: the .fmu file to write, or the .ssv file.
         outside: instances that stay outside; what they feed becomes inputs of the FMU.
         scene: name or file of the scene that gives start values; the system's default if not given.
@@ -86,7 +88,7 @@ def export_fmu(
 
 def _exported(
     file: Path,
-    system: str | Path,
+    system: str | Path | System,
     scene: str | Path | Scene | None,
     wishes: Wishes,
     outside: Sequence[str],
@@ -100,8 +102,8 @@ def _exported(
     hosted = wanted is not None and not outside and is_gearbox(structure)
     if wanted not in (None, Wanted()) and not hosted:
         raise ParameterError(
-            f"{system}: what a host gives and sees can be chosen of a whole gearbox alone: one "
-            "gear pair with bearings and housing, whose two flanges are the ports of the system"
+            f"{structure.name}: what a host gives and sees can be chosen of a whole gearbox alone: "
+            "one gear pair with bearings and housing, whose two flanges are the ports of the system"
         )
     inside = structure.without(*outside)
     kept_out = option("outside", list(inside.foreign_parts))

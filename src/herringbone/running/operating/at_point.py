@@ -8,7 +8,7 @@ from herringbone.analysis.set_points import SPEED, TORQUE, set_point
 from herringbone.analysis.steady.set_points import Point, SetPoints
 from herringbone.core import EquilibriumError, ParameterError
 from herringbone.cosim.structure.system import System
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.loading import load_scene, system_and_folder
 from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.running.prepared import Prepared, Wishes, prepared
 from herringbone.scenes import Scene, Start
@@ -29,7 +29,7 @@ def prepared_at(
     """
     point.check()
     asked = replace(wishes, start=Start.REST, start_offset={}, lean=True)
-    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+    structure, folder = system_and_folder(system)
     if point.torque is not None and wishes.gear:  # what balances it follows from the pair
         structure = prepared(system, scene, asked).system
     wanted = {**SetPoints(structure).values(point), **wishes.values}

@@ -19,7 +19,7 @@ from herringbone.result.budget import BudgetRow, Known
 from herringbone.running.fitted import housings_of
 from herringbone.running.housings.given import split_housings
 from herringbone.running.housings.rigid_ground import rigid_bearings
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.loading import load_scene, system_and_folder
 from herringbone.running.operating.commanded import changing, own_point, with_known_values
 from herringbone.running.operating.lean import SOURCE, certified, changed_by
 from herringbone.running.prepared import Wishes
@@ -119,7 +119,7 @@ def _unknown_row(how: str) -> BudgetRow:
 def _left_out(
     system: str | Path | System, scene: str | Path | Scene | None, wishes: Wishes, point: Point
 ) -> ByHand:
-    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+    structure, folder = system_and_folder(system)
     chosen = load_scene(folder, scene)
     names, unknown = [], []
     known = with_known_values(structure, chosen, wishes)

@@ -24,7 +24,7 @@ from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system import System
 from herringbone.running.fitted import housings_of
 from herringbone.running.housings.given import split_housings
-from herringbone.running.loading import load_scene, load_system, with_replacements
+from herringbone.running.loading import load_scene, system_and_folder, with_replacements
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Scene
 
@@ -109,7 +109,7 @@ def operated(
     for name, value in asked.items():
         if not isinstance(value, Real) or not math.isfinite(value):
             raise ParameterError(f"{name} = {value!r}: it must be a finite number")
-    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+    structure, folder = system_and_folder(system)
     known = with_known_values(structure, load_scene(folder, scene), wishes)
     if speed is not None:
         _check_speed(known, speed)

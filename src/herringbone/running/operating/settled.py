@@ -9,7 +9,7 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.running.api import run
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.loading import load_scene, system_and_folder
 from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Scene
@@ -50,7 +50,7 @@ def settled(
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+    structure, folder = system_and_folder(system)
     own = load_scene(folder, scene)
     asked = {SPEED: point.speed, TORQUE: point.torque}
     given = {name: value for name, value in asked.items() if value is not None}

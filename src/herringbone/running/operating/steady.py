@@ -10,7 +10,7 @@ from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import ParameterError
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.loading import load_scene, system_and_folder
 from herringbone.running.operating.asked_tolerance import asked_tolerance, tolerance_notes
 from herringbone.running.operating.at_point import NOTHING, prepared_at
 from herringbone.running.operating.by_hand import said_by_hand
@@ -88,7 +88,7 @@ def is_foreign(
     system: str | Path | System, scene: str | Path | Scene | None, wishes: Wishes
 ) -> bool:
     """True if a part of a system is foreign, so that no equations of it are known."""
-    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+    structure, folder = system_and_folder(system)
     known = with_known_values(structure, load_scene(folder, scene), wishes)
     return bool(known.foreign_parts)
 

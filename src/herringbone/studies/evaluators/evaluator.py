@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
+from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Scene
@@ -17,13 +18,13 @@ class Base:
     """What all points of a study have in common.
 
     Attributes:
-        system: name of a shipped system, folder with system.toml, or .ssp file.
+        system: name of a shipped system, folder with system.toml, .ssp file, or a System.
         scene: name or file of a scene, or one; None: the system's "loaded".
         wishes: over these.
         folder: in which relative names of files are looked up.
     """
 
-    system: str
+    system: str | System
     scene: str | Scene | None = None
     wishes: Wishes = field(default_factory=Wishes)
     folder: str = "."

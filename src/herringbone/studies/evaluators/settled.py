@@ -5,7 +5,7 @@ from typing import Any
 
 from herringbone.analysis.steady.solver import AS_IT_IS, TOLERANCE
 from herringbone.core import OutcomeKind
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.loading import load_scene, system_and_folder
 from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.running.operating.settled import LONGEST, settled
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation
@@ -44,7 +44,7 @@ class _Settling:
 
     def __init__(self, asked: Settled, base: Base) -> None:
         self._asked, self._wishes = asked, base.wishes
-        self._system, folder = load_system(base.system)
+        self._system, folder = system_and_folder(base.system)
         self._scene = load_scene(folder, base.scene)
         self._known = with_known_values(self._system, self._scene, base.wishes)
 

@@ -17,7 +17,7 @@ from herringbone.analysis.steady.set_points import Point as SteadyPoint
 from herringbone.analysis.steady.solver import AUTO, SteadySolver
 from herringbone.analysis.steady.state import BALANCE, SteadyState
 from herringbone.core import ParameterError
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.loading import load_scene, system_and_folder
 from herringbone.running.operating.asked_tolerance import asked_tolerance
 from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.running.operating.steady import prepared_solver
@@ -87,7 +87,7 @@ class _States:
 
     def __init__(self, asked: Steady, base: Base) -> None:
         self._asked, self._wishes = asked, base.wishes
-        self._system, folder = load_system(base.system)
+        self._system, folder = system_and_folder(base.system)
         self._scene = load_scene(folder, base.scene)
         self._known = with_known_values(self._system, self._scene, base.wishes)
         self._changes = Changes()

@@ -6,7 +6,7 @@ from typing import Any
 from herringbone.analysis.figures.settling import unsettled
 from herringbone.core import HerringboneError, OutcomeKind
 from herringbone.running.api import run
-from herringbone.running.loading import load_scene, load_system
+from herringbone.running.loading import load_scene, system_and_folder
 from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation
 from herringbone.studies.evaluators.levels import levels_over_time
@@ -45,7 +45,7 @@ class _Runs:
 
     def __init__(self, asked: Transient, base: Base) -> None:
         self._asked, self._wishes = asked, base.wishes
-        system, folder = load_system(base.system)
+        system, folder = system_and_folder(base.system)
         scene = load_scene(folder, base.scene)
         self._system, self._scene = system, scene
         self._known = with_known_values(system, scene, base.wishes)

@@ -15,7 +15,7 @@ from herringbone.core.facts import Facts
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System
-from herringbone.running.loading import load_scene, load_system, with_options
+from herringbone.running.loading import load_scene, system_and_folder, with_options
 from herringbone.running.operating.at_point import prepared_at
 from herringbone.running.operating.lean import lean_of
 from herringbone.running.operating.questions import questions_of
@@ -144,8 +144,7 @@ def plan(
 
 
 def _scene(system: str | Path | System, scene: str | Path | Scene | None) -> Scene:
-    folder = Path.cwd() if isinstance(system, System) else load_system(system)[1]
-    return load_scene(folder, scene)
+    return load_scene(system_and_folder(system)[1], scene)
 
 
 def _with_files(scene: Scene, gear: object, housing: object) -> Scene:
