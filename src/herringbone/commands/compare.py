@@ -11,6 +11,7 @@ from herringbone.commands import record
 from herringbone.commands.options import check_highest, refuse_given
 from herringbone.commands.output import check_writable, show
 from herringbone.core import ParameterError
+from herringbone.core.frequencies import HIGHEST
 from herringbone.core.places.files import write_whole
 
 if TYPE_CHECKING:
@@ -34,7 +35,9 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="columns (*, ?) to compare; the channel groups of B if not given",
     )  # fmt: skip
     sub.add_argument(
-        "--highest", type=float, help="end of the spectra in the picture in Hz; 3000 if not given"
+        "--highest",
+        type=float,
+        help=f"end of the spectra in the picture in Hz; {HIGHEST:g} if not given",
     )
     sub.add_argument(
         "-o",

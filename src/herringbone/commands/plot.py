@@ -7,6 +7,7 @@ from pathlib import Path
 from herringbone.commands.options import check_highest
 from herringbone.commands.output import check_writable, say, show, written_into
 from herringbone.core import ParameterError, ResourceError
+from herringbone.core.frequencies import HIGHEST
 from herringbone.core.places.files import is_file
 from herringbone.result.folder.names import UNITS
 
@@ -17,7 +18,9 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     sub.add_argument("folder", type=Path, help="folder of a run or of a sweep")
     sub.add_argument(
-        "--highest", type=float, help="end of spectra and waterfalls in Hz; 3000 if not given"
+        "--highest",
+        type=float,
+        help=f"end of spectra and waterfalls in Hz; {HIGHEST:g} if not given",
     )
     sub.add_argument(
         "--columns", nargs="+", default=[], metavar="PATTERN",

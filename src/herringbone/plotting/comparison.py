@@ -8,8 +8,9 @@ from herringbone.analysis.accuracy.common_ground import Sides
 from herringbone.analysis.accuracy.comparison import Comparison
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, PADDING, amplitude_spectrum
+from herringbone.core.frequencies import HIGHEST
 from herringbone.core.wording import percent
-from herringbone.plotting.panels import DECADES, HIGHEST, close_up, mark_orders
+from herringbone.plotting.panels import DECADES, close_up, mark_orders
 from herringbone.plotting.style import (
     COLOURS,
     draw_line,

@@ -16,13 +16,12 @@ from herringbone.analysis.figures.spectra import (
     amplitude_spectrum,
     mesh_orders,
 )
+from herringbone.core.frequencies import HIGHEST
 from herringbone.plotting.style import COLOURS, HALF_STYLE, MARKER_COLOUR, depths, draw_line
 from herringbone.result.result import TIME, Result
 
 SHOWN_PERIODS = 6
 """Mesh periods that a close-up shows."""
-HIGHEST = 3000.0
-"""End of the spectra if nothing else is asked for [Hz]."""
 MM = 1e3
 """Of SI lengths and velocities, as they are shown."""
 DECADES = 3.5

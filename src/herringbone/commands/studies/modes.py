@@ -13,13 +13,14 @@ from herringbone.commands.options import (
 )
 from herringbone.commands.output import check_writable, say, show, written_into
 from herringbone.core import ParameterError
+from herringbone.core.frequencies import HIGHEST
 from herringbone.core.places.files import write_whole
 
 if TYPE_CHECKING:
     from herringbone.analysis.modes.natural_modes import NaturalModes
 
 FILES = "modes.csv", "campbell.png", "shapes.png"
-_HIGHEST = 3000.0
+_HIGHEST_SPEED = 3000.0
 _SHARES = 3
 _LEAST_SHARE = 0.01
 
@@ -31,11 +32,11 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--highest",
         type=float,
-        default=_HIGHEST,
+        default=HIGHEST,
         help="frequency up to which modes are shown in Hz; %(default)g if not given",
     )
     sub.add_argument(
-        "--speed", type=float, default=_HIGHEST,
+        "--speed", type=float, default=_HIGHEST_SPEED,
         help="end of the Campbell diagram in r/min; %(default)g if not given",
     )  # fmt: skip
     sub.add_argument(

@@ -6,9 +6,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from herringbone.analysis.modes.natural_modes import NaturalModes
+from herringbone.core.frequencies import HIGHEST
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, new_figure, styled
 
-HIGHEST_HZ = 3000.0
 HIGHEST_SPEED = 3000.0
 """[r/min]"""
 ORDERS = (1, 2, 3, 4, 5, 6)
@@ -23,7 +23,7 @@ _APART = 0.028
 def campbell(
     found: NaturalModes,
     *,
-    highest: float = HIGHEST_HZ,
+    highest: float = HIGHEST,
     speed: float = HIGHEST_SPEED,
     orders: tuple[int, ...] = ORDERS,
 ) -> Figure:

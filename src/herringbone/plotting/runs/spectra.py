@@ -8,9 +8,9 @@ from herringbone.analysis.figures.operating_point import run_mesh_frequency, ste
 from herringbone.analysis.figures.radiated_power import LABEL, level_db
 from herringbone.analysis.figures.radiated_power import radiated_power as power_of
 from herringbone.core import ParameterError
+from herringbone.core.frequencies import HIGHEST
 from herringbone.plotting.panels import (
     DECADES,
-    HIGHEST,
     MM,
     headline,
     mark_orders,
