@@ -35,6 +35,7 @@ from .studies.exporting import export as export
 from .studies.planning.plan import Plan as Plan
 from .studies.planning.plan import plan as plan
 from .studies.sweep import Sweep as Sweep
+from .studies.table import read_table as read_table
 from .thesis.study import study as study
 
 __version__: str

@@ -1,17 +1,13 @@
 """The command `plot`: pictures of a run or of a study that is in a folder."""
 
 import argparse
-import csv
 from pathlib import Path
 
 from herringbone.commands.options import check_highest
 from herringbone.commands.output import check_writable, say, show, written_into
-from herringbone.core import ParameterError, ResourceError
+from herringbone.core import ParameterError
 from herringbone.core.frequencies import HIGHEST
 from herringbone.core.places.files import is_file
-from herringbone.result.folder.names import UNITS
-
-_STUDY = "table.csv"
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -41,7 +37,9 @@ def run(options: argparse.Namespace) -> int:
         raise ParameterError(f"there is no folder {options.folder}")
     if is_file(options.folder):
         raise ParameterError(f"{options.folder} is a file: plot takes the folder that it is in")
-    study = is_file(options.folder / _STUDY)
+    from herringbone.studies.table import TABLE  # noqa: PLC0415 (pandas: lazy)
+
+    study = is_file(options.folder / TABLE)
     if study and (options.columns or options.highest):
         raise ParameterError("--columns and --highest are of runs; this is the folder of a sweep")
     check_writable(output)
@@ -70,17 +68,11 @@ def _run(options: argparse.Namespace, output: Path) -> list[Path]:
 
 
 def _study(folder: Path, output: Path) -> list[Path]:
-    import pandas as pd  # noqa: PLC0415 (lazy)
+    from herringbone.plotting.studies.pictures import write_study_pictures  # noqa: PLC0415 (lazy)
+    from herringbone.studies.table import read_table  # noqa: PLC0415
 
-    from herringbone.plotting.studies.pictures import write_study_pictures  # noqa: PLC0415
-
-    try:
-        table = pd.read_csv(folder / _STUDY)
-        with (folder / UNITS).open(encoding="utf-8", newline="") as stream:
-            units = {row[0]: row[1] for row in csv.reader(stream) if len(row) == 2}
-    except (OSError, ValueError) as error:
-        raise ResourceError(f"{folder}: its table is damaged: {error}") from error
-    drawn = write_study_pictures(table, units, output, folder.name)
+    found = read_table(folder)
+    drawn = write_study_pictures(found.data, found.units, output, folder.name)
     for line in drawn.missing:
         say(line)
     return drawn.files

@@ -57,6 +57,14 @@ def records_of(table: pd.DataFrame) -> list[dict[str, Any]]:
     ]
 
 
+def as_numbers(column: pd.Series) -> pd.Series:
+    """The column as numbers, bit by bit, if all of them are."""
+    try:
+        return column.astype(float)
+    except ValueError:
+        return column
+
+
 def _text_of(rows: np.ndarray) -> str:
     """Rows (n, m) as lines of the shortest numbers that read back bit by bit."""
     if not rows.size or not np.isfinite(rows).all():  # which JSON has no words for

@@ -1,5 +1,6 @@
 """The tidy table of a study: a row per point."""
 
+import csv
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,9 +8,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from herringbone.core import ResourceError
+from herringbone.core.facts import Facts
+from herringbone.core.places.files import is_file
 from herringbone.result.folder.names import UNITS
 from herringbone.result.folder.writing import replacing
 from herringbone.result.tables import (
+    as_numbers,
     parquet_library,
     pieces_of,
     write_csv,
@@ -26,9 +31,9 @@ _POINT, _OUTCOME, _MESSAGE = "point", "outcome", "message"
 _ROWS_IN_PIECE = 4096
 
 
-@dataclass(frozen=True)
-class StudyTable:
-    """The table of chains that are all there.
+@dataclass(frozen=True, repr=False)
+class StudyTable(Facts):
+    """The table of a study's points.
 
     Attributes:
         data: a row per point.
@@ -37,6 +42,9 @@ class StudyTable:
 
     data: pd.DataFrame
     units: Mapping[str, str]
+
+    def _facts(self) -> dict[str, str]:
+        return {"points": str(len(self.data)), "table": f"{len(self.data.columns)} columns"}
 
     def write(self, folder: Path, *, parquet: bool) -> list[Path]:
         """Write the table and its units; returns the files.
@@ -60,6 +68,31 @@ class StudyTable:
         else:
             (folder / PARQUET).unlink(missing_ok=True)
         return files
+
+
+def read_table(folder: str | Path) -> StudyTable:
+    """The table in a folder that `herringbone sweep` has written, bit by bit.
+
+    Args:
+        folder: of the sweep.
+
+    Raises:
+        ResourceError: it has no table, or that is damaged.
+    """
+    folder = Path(folder)
+    if not is_file(folder / TABLE):
+        raise ResourceError(
+            f"{folder} has no {TABLE}: it holds no sweep, or one that was cut off; the same sweep "
+            "into this folder goes on"
+        )
+    try:
+        texts = pd.read_csv(folder / TABLE, dtype=str, keep_default_na=False)
+        data = texts.apply(as_numbers).astype({_POINT: int})
+        with (folder / UNITS).open(encoding="utf-8", newline="") as stream:
+            rows = [row for row in csv.reader(stream) if len(row) == 2][1:]
+    except (OSError, ValueError, KeyError) as error:
+        raise ResourceError(f"{folder}: its table is damaged: {error}") from error
+    return StudyTable(data, {name: "" if unit == "1" else unit for name, unit in rows})
 
 
 def study_table(

@@ -159,8 +159,10 @@ def test_a_killed_parent_leaves_chains_that_are_right(tmp_path, serial):
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     assert not (tmp_path / "table.csv").exists()
-    with pytest.raises(ResourceError, match="holds a sweep, not a run"):
+    with pytest.raises(ResourceError, match=r"holds a sweep, not a run: herringbone.read_table"):
         hb.load(tmp_path)
+    with pytest.raises(ResourceError, match=r"has no table.csv: it holds no sweep, or one that"):
+        hb.read_table(tmp_path)
     found = swept(tmp_path, evaluator=Cheap(seconds=0.05))
     assert found.table.equals(serial)
 
@@ -323,3 +325,14 @@ def test_a_system_itself_is_swept_as_the_one_of_its_name(tmp_path, serial):
         assert found.table.equals(serial)
         evaluated.append(len(log.read_text().splitlines()))
     assert evaluated[0] == evaluated[1]
+
+
+def test_a_table_is_read_back_bit_by_bit_with_the_units_of_the_sweep(tmp_path):
+    """Pure numbers have the unit "" in memory, and "1" in the file."""
+    found, read = swept(tmp_path), hb.read_table(tmp_path)
+    pd.testing.assert_frame_equal(read.data, found.table, check_exact=True)
+    assert read.units == found.units
+    assert read.units["speed"] == "rad/s"
+    assert read.units["x"] == "m"
+    assert read.units["point"] == read.units["message"] == ""
+    assert repr(read) == "StudyTable(points 24; table 6 columns)"

@@ -15,6 +15,7 @@ from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.stored_table import stored_table
 from herringbone.result.result import TIME, Result
 from herringbone.result.run_info import RunInfo
+from herringbone.result.tables import as_numbers
 
 _UNITS = "# units: "
 _LACKING = 1.5
@@ -72,8 +73,8 @@ def _load_old(folder: Path) -> Result:
     """Results from before the folder had a format: results.csv and summary.json."""
     if is_file(folder / STUDY):
         raise ResourceError(
-            f"{folder} holds a sweep, not a run: read its table.csv with pandas.read_csv, draw "
-            "it by 'herringbone plot', or load points from its folder series, if it has one"
+            f"{folder} holds a sweep, not a run: herringbone.read_table reads its table, "
+            "'herringbone plot' draws it; load points from its folder series, if it has one"
         )
     if not (is_file(folder / TABLE) and is_file(folder / SUMMARY)):
         raise ResourceError(
@@ -87,7 +88,7 @@ def _load_old(folder: Path) -> Result:
         told = first.removeprefix(_UNITS).rstrip("\n").split(", ") if _UNITS in first else []
         pairs = (entry.rsplit(" ", 1) for entry in told)
         data = pd.read_csv(folder / TABLE, comment="#", dtype=str, keep_default_na=False)
-        data = data.apply(_numbers)
+        data = data.apply(as_numbers)
         units = {name: "" for name in data.columns} | {n: "" if u == "1" else u for n, u in pairs}
         result = result_of(_old_fields(found), data, units)
     except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
@@ -113,11 +114,3 @@ def _old_fields(found: dict[str, Any]) -> dict[str, Any]:
         "budget": found.get("error_budget", []),
         **rest,
     }
-
-
-def _numbers(column: pd.Series) -> pd.Series:
-    """The column as numbers, bit by bit, if all of them are."""
-    try:
-        return column.astype(float)
-    except ValueError:
-        return column
