@@ -1,7 +1,7 @@
 from .analysis.accuracy.comparison import compare as compare
 from .analysis.figures.sensing.plateaus import plateau_statistics as plateau_statistics
 from .analysis.measured.of_run import compare_record as compare_record
-from .analysis.steady.set_points import Point as Point
+from .analysis.steady.operating_point import Point as Point
 from .analysis.steady.solver import SteadySolver as SteadySolver
 from .analysis.steady.sound import radiated_power as radiated_power
 from .analysis.steady.state import SteadyState as SteadyState

@@ -21,7 +21,7 @@ import herringbone as hb
 from campaigns.plans import tell
 from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import Question, apart, lines_of
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.twin.condensed.lean import WHOLE

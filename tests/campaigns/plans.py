@@ -26,7 +26,7 @@ from fuzz.campaign import last_commit
 
 from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import apart, lines_of
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.core import HerringboneError
 from herringbone.housing import default_housing, write_housing

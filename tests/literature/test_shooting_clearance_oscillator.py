@@ -22,7 +22,7 @@ from support.gearing.gear_mesh import constant_table
 import herringbone as hb
 from herringbone.analysis.steady.marching.held import Held
 from herringbone.analysis.steady.marching.marched import start_of
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.fused.core import Steps

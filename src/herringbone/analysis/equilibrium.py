@@ -18,7 +18,7 @@ from herringbone.analysis.answered import NO_ANSWERS, Answered, Answers
 from herringbone.analysis.balanced_angle import NoBalanceError, balanced_angles
 from herringbone.analysis.balanced_speed import balanced_speed
 from herringbone.analysis.rigid_rotation import rigid_rotation, turning
-from herringbone.analysis.steady_search import scales, steady_rotation
+from herringbone.analysis.rotation_search import scales, steady_rotation
 from herringbone.analysis.swung_out import even_rotation, swung_out
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError

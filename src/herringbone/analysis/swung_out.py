@@ -9,7 +9,7 @@ import numpy as np
 
 from herringbone.analysis.answered import Answered
 from herringbone.analysis.at_rest import Rest
-from herringbone.analysis.steady_search import scales, steady_rotation
+from herringbone.analysis.rotation_search import scales, steady_rotation
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 

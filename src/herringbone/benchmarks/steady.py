@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.declaring.roles import Role

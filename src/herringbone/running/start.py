@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from herringbone.analysis.steady_search import SCALE
+from herringbone.analysis.rotation_search import SCALE
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import EquilibriumError, ParameterError
 from herringbone.core.names import first_of

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.modes.natural_modes import NaturalModes
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import HerringboneError
 from herringbone.core.declaring.units import RAD_S

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from herringbone.analysis import steady_search
+from herringbone.analysis import rotation_search
 from herringbone.analysis.equilibrium import equilibrium
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import EquilibriumError, HerringboneError, ParameterError, StructureError
@@ -214,10 +214,10 @@ def test_a_search_that_is_caught_is_given_up(monkeypatch):
         threads.append({p["num_threads"] for p in threadpool_info() if p["user_api"] == "blas"})
         return slopes(*arguments)
 
-    slopes = steady_search.slopes
-    monkeypatch.setattr(steady_search, "slopes", counted)
+    slopes = rotation_search.slopes
+    monkeypatch.setattr(rotation_search, "slopes", counted)
     system = read_system("gearbox").with_values({"gear_mesh.pinion.tau": 200.0})
     with threadpool_limits(limits=2, user_api="blas"), pytest.raises(EquilibriumError):
         equilibrium(system)
-    assert steady_search._PATIENCE < len(threads) < steady_search._ITERATIONS
+    assert rotation_search._PATIENCE < len(threads) < rotation_search._ITERATIONS
     assert all(found == {1} for found in threads)

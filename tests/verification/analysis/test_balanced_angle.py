@@ -9,7 +9,7 @@ import pytest
 from herringbone.analysis import equilibrium
 from herringbone.analysis.balanced_angle import balanced_angles
 from herringbone.analysis.rigid_rotation import steady_rows, units_of_states
-from herringbone.analysis.steady_search import SCALE
+from herringbone.analysis.rotation_search import SCALE
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.cosim.structure.system import PartSpec, System

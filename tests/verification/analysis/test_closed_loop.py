@@ -5,7 +5,7 @@ import re
 import pytest
 
 from herringbone.analysis.rigid_rotation import names_of_states, opposed_speed
-from herringbone.analysis.steady_search import steady_rotation
+from herringbone.analysis.rotation_search import steady_rotation
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.cosim.structure.system_file import read_system

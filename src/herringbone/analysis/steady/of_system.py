@@ -7,8 +7,8 @@ from fractions import Fraction
 import numpy as np
 
 from herringbone.analysis.rigid_rotation import names_of_states
+from herringbone.analysis.rotation_search import scales
 from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples, still
-from herringbone.analysis.steady_search import scales
 from herringbone.analysis.twin.condensed.equations import laws_of, settle_laws
 from herringbone.analysis.twin.condensed.laws import laws_along
 from herringbone.analysis.twin.condensed.system import Condensed

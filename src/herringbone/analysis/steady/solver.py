@@ -6,6 +6,7 @@ from copy import copy
 import numpy as np
 
 from herringbone.analysis.steady.flanks import on_other_flank, prepared_flanks
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.searching.guess import Guess, Neighbour, motion_at
 from herringbone.analysis.steady.searching.remarks import (
     NO_LOAD,
@@ -13,7 +14,6 @@ from herringbone.analysis.steady.searching.remarks import (
     other_flank,
 )
 from herringbone.analysis.steady.searching.search import Search
-from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SHOOTING, SteadyState
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean

@@ -12,12 +12,12 @@ from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
 from herringbone.analysis.steady.harmonic_balance.floquet import Multipliers, multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
 from herringbone.analysis.steady.marching.shooting import Shot
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.outputs import Harmonics, harmonics, states
 from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.analysis.steady.searching.found import Settled
 from herringbone.analysis.steady.searching.guess import Guess, Neighbour
 from herringbone.analysis.steady.searching.irregular import Irregular
-from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core.declaring.units import R_MIN
 from herringbone.core.places.part_path import PartPath

@@ -12,7 +12,7 @@ from herringbone.analysis.steady.frozen import FrozenLaws, tangents_of
 from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.of_system import SystemLaws, problem_of, turns_of
-from herringbone.analysis.steady.set_points import SetPoints
+from herringbone.analysis.steady.operating_point import SetPoints
 from herringbone.analysis.twin.condensed.lean import Lean
 from herringbone.analysis.twin.condensed.recorded.wanted import Wanted
 from herringbone.analysis.twin.fused.core import Core

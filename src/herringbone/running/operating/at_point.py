@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.set_points import SPEED, TORQUE, set_point
-from herringbone.analysis.steady.set_points import Point, SetPoints
+from herringbone.analysis.steady.operating_point import Point, SetPoints
 from herringbone.core import EquilibriumError, ParameterError
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_scene, system_and_folder

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy, value_at
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.components.registry import component_for
 from herringbone.core import HerringboneError
 from herringbone.core.declaring.roles import Role

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from herringbone.analysis.leaner.question import Question, apart, lines_of
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import HerringboneError

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.analysis.steady.of_runs.settled import SettledState
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.running.api import run

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from herringbone.analysis.steady.of_runs.settled import SettledState
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import AS_IT_IS, AUTO, TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import ParameterError

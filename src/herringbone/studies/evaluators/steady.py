@@ -10,10 +10,10 @@ import numpy as np
 from herringbone.analysis.figures.sensitivity import SENSITIVITY
 from herringbone.analysis.set_points import SPEED, TORQUE, set_point
 from herringbone.analysis.steady.of_runs.settled import SettledState
+from herringbone.analysis.steady.operating_point import Point as SteadyPoint
 from herringbone.analysis.steady.searching.guess import Guess, Neighbour
 from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed
 from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
-from herringbone.analysis.steady.set_points import Point as SteadyPoint
 from herringbone.analysis.steady.solver import AUTO, SteadySolver
 from herringbone.analysis.steady.state import BALANCE, SteadyState
 from herringbone.core import ParameterError

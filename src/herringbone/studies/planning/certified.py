@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from herringbone.analysis.leaner.question import Apart, Question, apart, lines_of, nothing_asked
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean

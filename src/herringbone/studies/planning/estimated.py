@@ -6,7 +6,7 @@ from dataclasses import replace
 from herringbone.analysis.leaner.cuts import Cut, cuts_of, modes_of
 from herringbone.analysis.leaner.estimate import Estimates
 from herringbone.analysis.leaner.question import Apart, Question
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure

@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.core import ParameterError
 from herringbone.scenes.asking import Operating, Range
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from herringbone.analysis.leaner.question import Apart, Question
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 
 STEADY, FUSED, COUPLED = "steady state", "fused run", "coupled run"

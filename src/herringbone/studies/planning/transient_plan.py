@@ -11,7 +11,7 @@ import numpy as np
 
 from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import Question
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST, SHORTEST
 from herringbone.core import HerringboneError, ParameterError

@@ -14,7 +14,7 @@ import numpy as np
 
 from herringbone.analysis.figures.modal_response import modal_velocity, modal_velocity_amplitudes
 from herringbone.analysis.set_points import SPEED, TORQUE
-from herringbone.analysis.steady.set_points import Point, SetPoints
+from herringbone.analysis.steady.operating_point import Point, SetPoints
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.declaring.roles import HALVES

@@ -11,7 +11,7 @@ from herringbone.analysis.leaner.cuts import cuts_of, modes_of
 from herringbone.analysis.leaner.estimate import Estimates
 from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import Question, apart, lines_of
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.twin.condensed.lean import Lean, held_states

@@ -9,8 +9,8 @@ from herringbone.analysis.steady.harmonic_balance.families import Families
 from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on
 from herringbone.analysis.steady.harmonic_balance.krylov import correct_by_families
 from herringbone.analysis.steady.harmonic_balance.orbit import Period
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.searching import guess, resolution
-from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes

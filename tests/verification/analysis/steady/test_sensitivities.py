@@ -5,9 +5,9 @@ import pytest
 from support.steady import STILL
 
 import herringbone as hb
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.sensitivities.assumed import assumed
 from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
-from herringbone.analysis.steady.set_points import Point
 from herringbone.components.registry import COMPONENTS
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes

@@ -7,8 +7,8 @@ import pytest
 
 import herringbone as hb
 from herringbone.analysis.steady.marching.parting import parting
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.searching.search import Search
-from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.commands.main import main
 from herringbone.core import ParameterError

@@ -13,7 +13,7 @@ from threadpoolctl import threadpool_limits
 import herringbone as hb
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.marching.marched import Following, start_of
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.fused.core import Steps
 from herringbone.components.law_addresses import law_address, signals_address

@@ -13,7 +13,7 @@ from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Pe
 from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.steady.marching.march import March
 from herringbone.analysis.steady.marching.marched import marched
-from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
 

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from herringbone.analysis.steady.harmonic_balance.orbit import Orbit
 from herringbone.analysis.steady.marching.march import March
 from herringbone.analysis.steady.marching.repeated import Repeated
+from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.searching.found import Found
 from herringbone.analysis.steady.searching.guess import LONG, LONGEST, SETTLING, turns
 from herringbone.analysis.steady.searching.irregular import Irregular
-from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import ParameterError
 from herringbone.core.wording import percent
