@@ -11,7 +11,7 @@ from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance, ParameterError
 from herringbone.core.caching.generated import load_generated
 from herringbone.core.declaring.declaration import Declaration, node_name
-from herringbone.core.declaring.units import base_exponents
+from herringbone.core.declaring.units import unit_dimension
 from herringbone.core.declaring.variable import NODES, Causality
 from herringbone.core.part import Addresses, PartVariable, Value, ValueOrArray
 from herringbone.kernels import fmi_calls
@@ -69,11 +69,6 @@ def part_variables(component: str) -> Mapping[str, PartVariable]:
         reference = declaration.size + k
         found[text.name] = PartVariable(text.name, reference, "parameter", type="String")
     return dict(sorted(found.items(), key=lambda item: item[1].reference))
-
-
-def unit_dimension(unit: str) -> tuple:
-    """Factor, offset and exponents of an SI unit, in the form that masters compare."""
-    return (1.0, 0.0, tuple(sorted(base_exponents(unit).items())))
 
 
 class InProcessPart:

@@ -27,7 +27,7 @@ from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component_for
 from herringbone.core import Instance, ParameterError
 from herringbone.core.declaring.roles import Role
-from herringbone.core.declaring.units import base_exponents
+from herringbone.core.declaring.units import unit_dimension
 from herringbone.core.part import Part, PartVariable
 from herringbone.core.process.telling import Tell, untold
 from herringbone.cosim.signature.trial import Refused
@@ -174,7 +174,7 @@ def _declared(part: Part) -> Iterator[Finding]:
 def _units(present: Sequence[PartVariable]) -> Finding:
     """Whether units are of the right dimension; others than SI are brought to it."""
     known = [(v, v.dimension) for v in present if v.unit and v.dimension]
-    wrong = [f"{v.name} in {v.unit}" for v, d in known if d[2] != _exponents(_UNITS[v.name])]
+    wrong = [f"{v.name} in {v.unit}" for v, d in known if d[2] != unit_dimension(_UNITS[v.name])[2]]
     if wrong:
         return judged("units", False, ", ".join(wrong[:3]), "N, m, m/s")
     if others := sorted({str(v.unit) for v, d in known if d[:2] != (1.0, 0.0)}):
@@ -182,7 +182,3 @@ def _units(present: Sequence[PartVariable]) -> Finding:
     bare = sum(not v.unit for v in present)
     shown = f"{bare} without unit, taken as SI" if bare else "declared"
     return judged("units", True, shown, "N, m, m/s")
-
-
-def _exponents(unit: str) -> tuple:
-    return tuple(sorted(base_exponents(unit).items()))

@@ -73,3 +73,8 @@ def base_exponents(unit: str) -> dict[str, float]:
     except KeyError:
         known = ", ".join(UNITS)
         raise StructureError(f"unit '{unit}' is unknown; use one of: {known}") from None
+
+
+def unit_dimension(unit: str) -> tuple:
+    """Factor, offset and exponents of an SI unit, in the form that masters compare."""
+    return (1.0, 0.0, tuple(sorted(base_exponents(unit).items())))

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from herringbone.analysis.twin.composite_parts import Parts, feedthrough_of
 from herringbone.analysis.twin.fused.core import Core
-from herringbone.components.in_process import unit_dimension
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
+from herringbone.core.declaring.units import unit_dimension
 from herringbone.core.declaring.variable import NODES
 from herringbone.core.part import PartVariable
 from herringbone.kernels.signals import STRIDE
