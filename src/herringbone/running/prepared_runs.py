@@ -61,7 +61,7 @@ def fused_run(
     progress, recorded, output = heard
     if output is not None:
         output.claim(system, scene, replace(asked, notes=(), left_out=None))
-    result = fused(system, scene, asked, progress, recorded, output)
+    result = fused(system, scene, asked, progress, recorded, output, verify=verify)
     if result.outcome.unstable:
         return result
     if not result.outcome.ended_well:  # who stops a run waits for no other one

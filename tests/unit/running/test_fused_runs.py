@@ -72,7 +72,7 @@ def test_no_step_is_short_enough(monkeypatch):
 
 
 def test_an_interrupted_run_is_resumed(tmp_path, monkeypatch, capsys):
-    """With the bits, counts and figures of one that was never cut off."""
+    """With the bits, counts, error and figures of one that was never cut off."""
     options = ["run", "gearbox", "--fuse", "--t-end=0.5", "--record-step=1e-4", "--step=1e-4"]
     options += ["--no-pictures"]
     assert main([*options, "-o", str(tmp_path / "whole")]) == 0
@@ -97,6 +97,8 @@ def test_an_interrupted_run_is_resumed(tmp_path, monkeypatch, capsys):
     assert cut.data.to_numpy().tobytes() == whole.data.to_numpy().tobytes()
     told = [json.loads((tmp_path / n / "summary.json").read_text()) for n in ("whole", "cut")]
     assert told[0]["core"] == told[1]["core"]
+    assert told[0]["verification"] == told[1]["verification"]
+    assert told[1]["verification"]["how"].endswith("over the first 20 ms and the last 20 ms")
 
 
 def test_half_the_step_over_the_whole_run():

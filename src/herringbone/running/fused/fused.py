@@ -5,16 +5,15 @@ from dataclasses import dataclass, replace
 
 from herringbone.analysis.accuracy.apart import apart
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
-from herringbone.analysis.twin.fused.measured import DEGREES, Measured, measured, suited
+from herringbone.analysis.twin.fused.later import later, watched
+from herringbone.analysis.twin.fused.measured import DEGREES, WINDOW, Measured, measured, suited
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.caching.remembered import Remembered
 from herringbone.core.places.files import same_folder
 from herringbone.core.process.activity import activity
 from herringbone.core.process.one_thread import one_blas_thread
-from herringbone.core.wording import option, percent
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
-from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
@@ -22,6 +21,7 @@ from herringbone.result.budget import BudgetRow
 from herringbone.result.result import Result
 from herringbone.result.verification import HALVED, Verification, error_unknown
 from herringbone.running.fused.beside import KIND, with_channels
+from herringbone.running.fused.known_error import KnownError
 from herringbone.running.fused.loop import FusedRun
 from herringbone.running.operating.lean import lean_of, refuse_frozen, with_row
 from herringbone.running.output.run_output import RunOutput
@@ -78,6 +78,8 @@ def fused(
     progress: bool | Progress = False,
     recorded: Callable[[Result], None] | None = None,
     output: RunOutput | None = None,
+    *,
+    verify: bool = False,
 ) -> Result:
     """Run a prepared system as one core.
 
@@ -87,6 +89,7 @@ def fused(
         asked: of the run.
         progress, recorded: see `api.run`.
         output: folder into which rows go while the run goes on; None: they stay in memory.
+        verify: its error over the whole run is found after that, see `verified_by_half`.
 
     Raises:
         StructureError: a part cannot be condensed.
@@ -100,14 +103,18 @@ def fused(
             columns = core.chosen(asked.record)
             trial = _trial(core, asked, scene.t_end)
         system = with_channels(system, columns)
-        lines = [*asked.notes, *_lines(core, asked, trial)]
-        streaming = None
+        known, streaming = KnownError(trial), None
         if output is not None:
-            start = start_of(system, scene, KIND, KIND, _grid(scene), lines)
+            start = start_of(system, scene, KIND, KIND, _grid(scene), _lines(core, asked, known))
             streaming = output.stream(start)
-        recording = _marched(core, trial.steps, columns, system, scene, progress, streaming)
-    every = make_result(system, scene, KIND, KIND, recording, lines)
-    every = replace(every, verification=_verification(trial))
+        marks = () if verify else watched(scene.t_end)
+        run = FusedRun(core, trial.steps, columns, _grid(scene), streaming, marks)
+        recording = _marched(run, system, scene, progress)
+        if recording.outcome.completed and not verify:
+            with activity(f"measuring the error of the steps of {system.name}"):
+                known = KnownError(trial, later(core, trial, scene.t_end, run.marks))
+    every = make_result(system, scene, KIND, KIND, recording, _lines(core, asked, known))
+    every = replace(every, verification=known.verification)
     every = with_row(judged(every, system, None), asked.left_out)
     result = every if output is None else output.seen(every)
     if recorded:
@@ -115,17 +122,9 @@ def fused(
     return result
 
 
-def _marched(
-    core: Core,
-    steps: Steps,
-    columns: Sequence[str],
-    system: System,
-    scene: Scene,
-    progress: bool | Progress,
-    streaming: Streaming | None = None,
-) -> Recording:
+def _marched(run: FusedRun, system: System, scene: Scene, progress: bool | Progress) -> Recording:
     with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
-        return FusedRun(core, steps, columns, _grid(scene), streaming).go(tell)
+        return run.go(tell)
 
 
 def _grid(scene: Scene) -> Grid:
@@ -152,7 +151,8 @@ def verified_by_half(
         core = Core(system, lean=lean_of(scene))
         columns = core.chosen(asked.record)
         system = with_channels(system, columns)
-        recording = _marched(core, steps, columns, system, scene, progress)
+        run = FusedRun(core, steps, columns, _grid(scene), None)
+        recording = _marched(run, system, scene, progress)
     if not recording.outcome.ended_well:
         return result.noted(error_unknown(recording.outcome, HALVED, OVER_ALL))
     found = apart(result, make_result(system, scene, KIND, KIND, recording, ()))
@@ -168,35 +168,15 @@ def _trial(core: Core, asked: FusedAsked, t_end: float) -> Measured:
     def tried() -> Measured:
         if asked.step is None:
             return suited(core, tolerance, t_end)
-        return measured(core, Steps(asked.step, DEGREES[0], closeness(tolerance)), t_end)
+        steps = Steps(asked.step, DEGREES[0], closeness(tolerance))
+        return measured(core, steps, min(t_end, WINDOW))
 
     key = core.content, core.lean, repr(core.groups()), asked.step, tolerance, t_end
     return _trials(key, tried)
 
 
-def _lines(core: Core, asked: FusedAsked, trial: Measured) -> list[str]:
-    tolerance, errors = asked.tolerance or DEFAULT_TOLERANCE, percent(trial.error)
-    steps = f"steps of {1e6 * trial.steps.length:.4g} us, degree {trial.steps.degree}"
-    over = f"the first {1e3 * trial.window:.3g} ms"
-    if not trial.groups:
-        known = option("verify", True)
-        lines = [
-            f"fused: {steps}; no channel varies over {over}, so that its error is not known; "
-            f"{known} measures it over the whole run"
-        ]
-    elif asked.step is None:
-        lines = [f"fused: {steps}, for an error of {100.0 * tolerance:g} %: {errors} over {over}"]
-    else:
-        lines = [f"fused: {steps}, as asked for: error {errors} over {over}"]
-    return [*lines, *core.unrecorded]
-
-
-def _verification(trial: Measured) -> Verification | None:
-    if not trial.groups:
-        return None
-    how = f"by half the step, over the first {1e3 * trial.window:.3g} ms"
-    half = 0.5 * trial.steps.length
-    return Verification(trial.groups, trial.worst, trial.worst_error, half, how)
+def _lines(core: Core, asked: FusedAsked, known: KnownError) -> list[str]:
+    return [*asked.notes, *known.lines(asked.step, asked.tolerance), *core.unrecorded]
 
 
 def check_kind(*, fmu: bool) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from herringbone.analysis.twin.condensed.solution import CoreStopped
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.course import Course
+from herringbone.analysis.twin.fused.mark import Mark
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.core.run_table import KeptRows, TableColumns
 from herringbone.cosim.checkpoint import checkpoints
@@ -28,6 +29,7 @@ class FusedRun:
         columns: recorded outputs.
         grid: records.
         streaming: where rows go while it goes on; None: they stay in memory.
+        watched: times at which marks are left, see `Course`.
     """
 
     def __init__(
@@ -37,10 +39,11 @@ class FusedRun:
         columns: Sequence[str],
         grid: Grid,
         streaming: Streaming | None,
+        watched: Sequence[float] = (),
     ) -> None:
         self._steps, self._columns, self._grid = steps, columns, grid
         self._times = np.arange(grid.count + 1) * grid.step
-        self._course = Course(core, self._times, steps, columns)
+        self._course = Course(core, self._times, steps, columns, watched=watched)
         self._streaming = streaming
         self._units = tuple(core.unit(name) for name in columns)
         self._waiting: list[tuple[np.ndarray, np.ndarray]] = []
@@ -50,6 +53,11 @@ class FusedRun:
             table = TableColumns(tuple(columns), self._units, {}, {})
             streaming.sink.begin(table, grid.count + 1)
         self._done, self._wall, self._cpu = 0, 0.0, 0.0
+
+    @property
+    def marks(self) -> Sequence[Mark]:
+        """That were left so far."""
+        return self._course.marks
 
     def go(self, progress: Progress | None) -> Recording:
         """Portion after portion."""

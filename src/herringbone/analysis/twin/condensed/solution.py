@@ -7,7 +7,9 @@ import numpy as np
 
 from herringbone.analysis.twin.condensed.at_times import coordinates
 from herringbone.analysis.twin.condensed.march import (
+    BASE,
     DONE,
+    INSIDE,
     KEPT,
     NOT_CONVERGED,
     RUNG,
@@ -216,6 +218,11 @@ class Solution:
                 self._fail(status, t0, asked.rungs)
         return Samples(*(array[:count] for array in samples))
 
+    def reached(self, t0: float, h: float) -> float:
+        """Time [s] up to which a piece from t0 on is done, in base steps h."""
+        place = self.state.place
+        return float(t0 + h * (place[BASE] + place[INSIDE] / 2**HALVINGS))
+
     def _make_matrices(self, *, short: bool) -> None:
         """In double precision once a step is halved, as where a law bends, and of short steps.
 
@@ -283,13 +290,12 @@ class Solution:
         return coordinates(samples, self._modes, self.degree)
 
     def _fail(self, status: int, t0: float, rungs: Rungs) -> None:
-        count, inside = self.state.place[:2]
-        t = t0 + count * rungs.lengths[0] + inside * rungs.lengths[-1]
+        t = self.reached(t0, rungs.lengths[0])
         why = "the laws have no solution" if status == NOT_CONVERGED else "a state is not finite"
         raise CoreStopped(
             f"the condensed core of {self._system.twin.system.name} stops at {t:g} s, in a step of "
             f"{rungs.lengths[-1]:g} s: {why}",
-            float(t),
+            t,
         )
 
 

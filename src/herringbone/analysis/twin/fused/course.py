@@ -10,7 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.twin.condensed.march import BENDS, EVALUATIONS, HALVINGS, STEPS
+from herringbone.analysis.twin.condensed.march_arrays import Samples
 from herringbone.analysis.twin.fused.core import Core, Steps
+from herringbone.analysis.twin.fused.mark import Mark, as_arrays, from_arrays
 
 _AT_ONCE = 250
 """Base steps of a portion: a millisecond of computing, whose steps are kept in the cache."""
@@ -35,26 +37,42 @@ class Piece(NamedTuple):
 
 
 class Course:
-    """A fused run from the start values on.
+    """A fused run from the start values on, or what follows a mark of one.
 
     Args:
         core: of the system.
         times: of the rows, equidistant from 0 [s].
         steps: how it is marched.
         columns: recorded outputs.
+        watched: times at which marks are left, ascending [s].
+        after: begin there, with steps of the same degree; all times are since then.
 
     Attributes:
         row: rows that are done.
         pieces: of the run.
+        marks: that were left.
     """
 
-    def __init__(self, core: Core, times: np.ndarray, steps: Steps, columns: Sequence[str]) -> None:
-        self._times = times
-        self.pieces = _pieces(core, times, steps.length)
+    def __init__(
+        self,
+        core: Core,
+        times: np.ndarray,
+        steps: Steps,
+        columns: Sequence[str],
+        *,
+        watched: Sequence[float] = (),
+        after: Mark | None = None,
+    ) -> None:
+        self._times, self._watched = times, watched
+        self._since = after.time if after else 0.0
+        self.marks: list[Mark] = []
+        self.pieces = _pieces(core, times, steps.length, self._since)
         gap = float(times[1] - times[0]) if times.size > 1 else 0.0
         inside = any(_inside(piece, gap) for piece in self.pieces)
         self._outputs = core.outputs(columns, steps, inside=inside)
         self._run = core.solution(steps)
+        if after:
+            self._run.put(after.state)
         longest = max((piece.step for piece in self.pieces), default=gap)
         rows = round(_AT_ONCE * longest / gap) if gap else 1
         self._rows = max(1, min(_MOST_ROWS, rows))
@@ -78,26 +96,40 @@ class Course:
         Raises:
             CoreStopped: the laws have no solution in the shortest step, or it diverges.
         """
-        piece = self.pieces[self._piece]
+        piece, since = self.pieces[self._piece], self._since
+        begin, end = since + piece.begin, since + piece.end
         if not self._entered:
-            self._run.enter(piece.begin, piece.end)
+            self._run.enter(begin, end)
             self._entered = True
-        end = min(self.row + self._rows, piece.last)
-        wanted = self._times[self.row : end]
-        whole = end == piece.last
-        samples = self._run.part(
-            piece.begin, piece.end, piece.step, np.append(wanted, np.inf) if whole else wanted
-        )
-        values = self._outputs.values(self._run, samples)
-        self.row = end
+        last = min(self.row + self._rows, piece.last)
+        mark = self._next_mark(piece, last)
+        if mark is not None:
+            last = int(np.searchsorted(self._times, mark))
+        wanted, whole = self._times[self.row : last], last == piece.last and mark is None
+        then = [np.inf] * whole if mark is None else [mark]
+        samples = self._run.part(begin, end, piece.step, since + np.append(wanted, then))
+        rows = Samples(*(kept[: wanted.size] for kept in samples))
+        values = self._outputs.values(self._run, rows)
+        self.row = last
+        if mark is not None:
+            self.marks.append(Mark(self._run.reached(begin, piece.step), self._run.saved()))
         if whole:
             self._piece, self._entered = self._piece + 1, False
         return wanted, values
 
+    def _next_mark(self, piece: Piece, last: int) -> float | None:
+        """When the next mark is left [s]; None if rows before the `last` one come first."""
+        if len(self.marks) == len(self._watched):
+            return None
+        mark = self._watched[len(self.marks)]
+        is_next = mark < piece.end and np.searchsorted(self._times, mark) <= last
+        return mark if is_next else None
+
     def saved(self) -> dict[str, np.ndarray]:
         """What is needed to go on with the same bits."""
         place = np.array([self._piece, self._entered, self.row])
-        return {"course": place, **{f"core.{k}": v for k, v in self._run.saved().items()}}
+        core = {f"core.{k}": v for k, v in self._run.saved().items()}
+        return {"course": place, **core, **as_arrays(self.marks)}
 
     def put(self, saved: Mapping[str, np.ndarray]) -> None:
         """Go on from there."""
@@ -106,13 +138,15 @@ class Course:
             bool(saved["course"][1]),
             int(saved["course"][2]),
         )
+        self.marks = from_arrays(saved)
         self._run.put({k.removeprefix("core."): v for k, v in saved.items()})
 
 
-def _pieces(core: Core, times: np.ndarray, longest: float) -> list[Piece]:
+def _pieces(core: Core, times: np.ndarray, longest: float, since: float) -> list[Piece]:
     end, gap = float(times[-1]), float(times[1] - times[0]) if times.size > 1 else 0.0
     found, t0 = [], 0.0
-    for t1 in [*core.twin.breakpoints(end), end]:
+    inside = [t - since for t in core.twin.breakpoints(since + end) if t > since]
+    for t1 in [*inside, end]:
         last = times.size if t1 == end else int(np.searchsorted(times, t1))
         found.append(Piece(t0, t1, base_step(t1 - t0, gap, longest), last))
         t0 = t1

@@ -8,6 +8,7 @@ import numpy as np
 from herringbone.analysis.accuracy.apart import differences
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.course import Course
+from herringbone.analysis.twin.fused.mark import Mark
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.loops.adaptive_step.step_error import LEAST
@@ -19,6 +20,9 @@ LONGEST, SHORTEST = 1e-4, 0.4e-6
 DEGREES = (4, 5)
 _SAFE = 0.95
 """Share of the tolerance that is used: the window is not the run."""
+_FADED = 1e-3
+"""Of its alternating part in an earlier window: what is left of a group of channels that comes to
+rest, and single precision would be felt."""
 _FEWEST = 16
 """Points of a window, at least."""
 
@@ -32,6 +36,8 @@ class Measured(NamedTuple):
         worst: the output with the largest error over its own alternating part; "" if none varies.
         worst_error: of that one.
         window: time over which they were tried [s].
+        sizes: alternating part of the liveliest output of each group, in its unit.
+        begin: of the window [s].
     """
 
     steps: Steps
@@ -39,6 +45,8 @@ class Measured(NamedTuple):
     worst: str
     worst_error: float
     window: float
+    sizes: Mapping[str, float]
+    begin: float = 0.0
 
     @property
     def error(self) -> float:
@@ -58,10 +66,10 @@ def suited(core: Core, tolerance: float, t_end: float) -> Measured:
         ParameterError: no step is short enough.
         CoreStopped: the system has no solution.
     """
-    found = None
-    for steps in _candidates(tolerance, min(t_end, WINDOW)):
+    found, window = None, min(t_end, WINDOW)
+    for steps in _candidates(tolerance, window):
         try:
-            found = measured(core, steps, t_end)
+            found = measured(core, steps, window)
         except HerringboneError:
             if steps.length <= SHORTEST:
                 raise
@@ -83,40 +91,64 @@ def _candidates(tolerance: float, window: float) -> Iterator[Steps]:
         length *= 0.5
 
 
-def measured(core: Core, steps: Steps, t_end: float) -> Measured:
-    """The error of steps at the start of a run.
+def measured(
+    core: Core,
+    steps: Steps,
+    window: float,
+    after: Mark | None = None,
+    earlier: Measured | None = None,
+) -> Measured:
+    """The error of steps at the start of a run, or after a mark of it.
 
     Args:
         core: of the system.
         steps: to be tried.
-        t_end: end of the run [s].
+        window: time over which they are [s].
+        after: begin there; it was left by a run with steps of the same degree.
+        earlier: window against which groups that have come to rest since are left out.
 
     Raises:
         CoreStopped: the system has no solution with these steps.
     """
-    window = min(t_end, WINDOW)
     groups = core.groups()
-    columns = list(dict.fromkeys(name for names in groups.values() for name in names))
+    columns = _columns(groups)
     times = np.linspace(0.0, window, max(_FEWEST, round(window / steps.length)) + 1)
     half = steps._replace(length=0.5 * steps.length)
-    ours, theirs = (values_at(core, times, own, columns) for own in (steps, half))
-    found = differences(ours, theirs, columns, groups, LEAST)
-    return Measured(steps, found.groups, found.worst, found.worst_difference, window)
+    ours, theirs = (values_at(core, times, own, columns, after) for own in (steps, half))
+    spread = dict(zip(columns, np.std(theirs, axis=0).tolist(), strict=True))
+    sizes = {name: max(spread[c] for c in own) for name, own in groups.items()}
+    before = earlier.sizes if earlier else {}
+    groups = {n: own for n, own in groups.items() if sizes[n] >= _FADED * before.get(n, 0.0)}
+    kept = [columns.index(name) for name in _columns(groups)]
+    found = differences(ours[:, kept], theirs[:, kept], _columns(groups), groups, LEAST)
+    begin = after.time if after else 0.0
+    return Measured(steps, found.groups, found.worst, found.worst_difference, window, sizes, begin)
 
 
-def values_at(core: Core, times: np.ndarray, steps: Steps, columns: Sequence[str]) -> np.ndarray:
-    """Outputs (times, columns) of a march from the start values on.
+def _columns(groups: Mapping[str, Sequence[str]]) -> list[str]:
+    return list(dict.fromkeys(name for names in groups.values() for name in names))
+
+
+def values_at(
+    core: Core,
+    times: np.ndarray,
+    steps: Steps,
+    columns: Sequence[str],
+    after: Mark | None = None,
+) -> np.ndarray:
+    """Outputs (times, columns) of a march from the start values on, or from a mark.
 
     Args:
         core: of the system.
-        times: equidistant from 0 [s].
+        times: equidistant from 0, or since the mark [s].
         steps: how it is marched.
         columns: outputs.
+        after: see `Course`.
 
     Raises:
         CoreStopped: the system has no solution with these steps.
     """
-    course = Course(core, times, steps, columns)
+    course = Course(core, times, steps, columns, after=after)
     rows = []
     with one_blas_thread():
         while not course.ended:
