@@ -18,7 +18,7 @@ from herringbone.analysis.answered import NO_ANSWERS, Answered, Answers
 from herringbone.analysis.balanced_angle import NoBalanceError, balanced_angles
 from herringbone.analysis.balanced_speed import balanced_speed
 from herringbone.analysis.rigid_rotation import rigid_rotation, turning
-from herringbone.analysis.rotation_search import scales, steady_rotation
+from herringbone.analysis.rotation_search import overrun_angles, scales, steady_rotation
 from herringbone.analysis.swung_out import even_rotation, swung_out
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
@@ -127,9 +127,29 @@ def equilibrium(system: System, angles: bool = True) -> Equilibrium:
             if _kept_speed(twin, held, guess, found):
                 return Equilibrium(_start_values(twin, found), residual)
             strayed = strayed or (found, residual)
+        if strayed is None:
+            strayed = _overrunning(twin, held, guess)
         if strayed is not None:  # its speed is what its drag leaves
             return Equilibrium(_start_values(twin, strayed[0]), strayed[1])
         raise max(failures, key=lambda error: isinstance(error, NoBalanceError))
+
+
+def _overrunning(
+    twin: Twin, held: int | None, guess: np.ndarray
+) -> tuple[np.ndarray, float] | None:
+    """Steady rotation, and residual, in which couplings are overrun: two speeds beside each other.
+
+    What an open coupling hands on does not drive the shaft behind it, whose own torques balance at
+    a speed of its own. None if there is no such coupling, or no such speed.
+    """
+    growing = [*overrun_angles(twin).values()]
+    if not growing:
+        return None
+    try:
+        stay = [] if held is None else [held]
+        return steady_rotation(twin.system, twin, stay, guess, growing=growing)
+    except EquilibriumError:
+        return None
 
 
 def _beginnings(

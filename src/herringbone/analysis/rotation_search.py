@@ -4,6 +4,8 @@ Angles are free up to a common rotation and a system without controller keeps it
 that the system of equations has a null space.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from herringbone.analysis.answered import Answered
@@ -44,6 +46,7 @@ def steady_rotation(
     stay: list[int],
     x: np.ndarray,
     answered: Answered | None = None,
+    growing: Sequence[int] = (),
 ) -> tuple[np.ndarray, float]:
     """Steady rotation, with some states as they are: states (n,) and scaled residual.
 
@@ -53,6 +56,7 @@ def steady_rotation(
         stay: places of the states that keep their values.
         x: (n,) guess.
         answered: of the parts that answer, if any; the acceleration is the last unknown then.
+        growing: places of states whose rates need not vanish, see `overrun_angles`.
 
     Raises:
         EquilibriumError: none was found.
@@ -61,7 +65,7 @@ def steady_rotation(
     count, scale = x.size, scales(twin)
     if x.size == 0:
         return x, 0.0
-    keep = np.setdiff1d(np.arange(count), rotating)
+    keep = np.setdiff1d(np.arange(count), [*rotating, *growing])
     if answered is not None:
         x, scale = np.append(x, 0.0), np.append(scale, answered.size)
     free = np.ones(x.size)
@@ -120,21 +124,29 @@ def _why(system: System, twin: Twin, x: np.ndarray, worst: str) -> str:
 
 
 def _overrun(twin: Twin, x: np.ndarray) -> str:
-    """Couplings that hand on nothing though they have an angle that must stay; "": there is none.
+    """Angles of couplings that are overrun and hand on nothing; "": there is none."""
+    angles = overrun_angles(twin)
+    torques = twin.observe(np.zeros(1), x[:, None], list(angles))[0] if angles else []
+    names = names_of_states(twin)
+    open_ = [names[i] for i, torque in zip(angles.values(), torques, strict=True) if torque == 0.0]
+    if not open_:
+        return ""
+    return f"{first_of(open_, _SHOWN)}, overrun, with torques behind that balance at no speed, "
 
-    Such a one carries while its angle is constant; while it is overrun the angle runs.
+
+def overrun_angles(twin: Twin) -> dict[str, int]:
+    """Angles of couplings that stay while these carry, and grow while they are overrun.
+
+    By what the coupling hands on: places among the states.
     """
-    columns, angles = [], []
-    for instance in twin.instances:
+    found = {}
+    for first, instance in zip(twin.layout.state_first, twin.instances, strict=False):
         d = instance.component.declaration
-        own = [v.name for v in d.states if v.steady == "constant" and v.unit == "rad"]
+        own = [i for i, v in enumerate(d.states) if v.steady == "constant" and v.unit == "rad"]
         torque = next((v.name for v in d.outputs if v.quantity == Quantity.TORQUE), "")
         if Role.COUPLING in d.roles and own and torque:
-            columns.append(f"{instance.name}.{torque}")
-            angles.append(f"{instance.name}.{own[0]}")
-    torques = twin.observe(np.zeros(1), x[:, None], columns)[0] if columns else []
-    found = [angle for angle, torque in zip(angles, torques, strict=True) if torque == 0.0]
-    return f"{first_of(found, _SHOWN)}, which is not constant while overrun, " if found else ""
+            found[f"{instance.name}.{torque}"] = int(first) + own[0]
+    return found
 
 
 def _nothing_carries(system: System) -> str:

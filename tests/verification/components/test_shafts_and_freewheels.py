@@ -134,13 +134,13 @@ def test_a_freewheel_that_is_overrun_gives_back_what_its_twist_holds():
     assert found["free_angle"] < 0.0
 
 
-def test_a_start_that_is_overrun_does_not_exist_and_names_the_free_angle():
-    """A governor holds 100 rad/s behind a source of 90: free_angle would run for ever."""
+def overrun(linear_share: float):
+    """A source of 90 rad/s, a freewheel, and what drives with 200 N m and a share of the speed."""
     governor = {"nominal_torque": 40.0, "nominal_speed": 100.0, "constant_share": 5.0}
     parts = {
         "slow": ("speed_source", {"speed_setpoint": 90.0, "speed": 90.0}),
         "fast": ("rotating_inertia", {"inertia": J1, "speed": 100.0}),
-        "governor": ("torque_source", {**governor, "linear_share": -5.0}),
+        "governor": ("torque_source", {**governor, "linear_share": linear_share}),
         "wheel": ("freewheel", {}),
     }
     joined = (
@@ -148,6 +148,19 @@ def test_a_start_that_is_overrun_does_not_exist_and_names_the_free_angle():
         ("fast.flange_a", "wheel.flange_b"),
         ("fast.flange_b", "governor.flange"),
     )
-    told = r"look for wheel\.free_angle, which is not constant while overrun, a load"
+    return system(parts, *joined)
+
+
+def test_a_start_may_be_overrun():
+    """The governor holds 100 rad/s; the twist lags by the release time, z = -10 rad/s 1 ms."""
+    start = equilibrium(overrun(-5.0)).values
+    assert start["fast.speed"] == pytest.approx(100.0, rel=1e-9)
+    twist = start["slow.angle"] - start["fast.angle"] - start["wheel.free_angle"]
+    assert twist == pytest.approx(-0.01, rel=1e-9)
+
+
+def test_an_overrun_side_without_a_balance_has_no_start_and_is_named():
+    """200 N m at any speed: nothing stops it."""
+    told = r"look for wheel\.free_angle, overrun, with torques behind that balance at no speed, a"
     with pytest.raises(EquilibriumError, match=told):
-        equilibrium(system(parts, *joined))
+        equilibrium(overrun(0.0))

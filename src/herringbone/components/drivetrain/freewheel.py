@@ -11,8 +11,9 @@ coupling. When b overruns, z goes below 0 and free_angle follows, release_time b
 w_rel release_time. So the freewheel engages again wherever b stops to overrun, and no torque acts
 meanwhile. Damping rises smoothly with the engagement and never pulls.
 
-An overrunning start does not exist: free_angle, constant while a drives, has no steady value then.
-Start such a run from declared values, or engaged, with a start offset of the speeds.
+A start in equilibrium is engaged where there is such one. Else it is overrun, free_angle grows, and
+each side turns at the speed at which its own torques balance; where they do not, start the run from
+declared values, or engaged, with a start offset of the speeds.
 
 Left out: drag while overrunning, the inertia of the sprags, slip at overload.
 
