@@ -62,7 +62,7 @@ def problem_of(system: Condensed, late: float) -> Problem:
         late: time [s] after which no signal changes.
 
     Raises:
-        StructureError: it rotates in several ways.
+        StructureError: it rotates in several ways, or where it vibrates depends on where it began.
     """
     modes, calls = system.modes, system.calls()
     if modes.angles.size > 1:
@@ -70,41 +70,58 @@ def problem_of(system: Condensed, late: float) -> Problem:
             f"{system.twin.system.name}: {modes.angles.size} shafts rotate independently of each "
             "other, so that their motion does not repeat"
         )
-    _refuse_neutral(system)
+    neutral = _neutral(system)
     table = system.table(calls)
     rotating = modes.angles.size == 1
     size = np.abs(system.equations.c) @ np.abs(modes.rigid)
     of_angle = np.where(np.abs(modes.of_angles) > _NONE * size, modes.of_angles, 0.0)
+    turns, arguments = np.zeros(modes.rates.size, dtype=complex), modes.arguments.copy()
+    if rotating:
+        turns[:] = modes.turns[0]
+    turns[neutral] = arguments[:, neutral] = 0.0
     return Problem(
         modes.rates,
         modes.inputs,
-        modes.arguments,
+        arguments,
         of_angle[:, 0] if rotating else np.zeros(len(modes.arguments)),
         modes.of_channels,
-        modes.turns[0] if rotating else np.zeros(modes.rates.size),
+        turns,
         modes.tangent,
         system.directions,
         table.value,
         _means(modes.tangent[table.value], system.directions),
         SystemLaws(system, late),
+        tuple(neutral.tolist()),
+        tuple(modes.start[neutral].real.tolist()),
     )
 
 
-def _refuse_neutral(system: Condensed) -> None:
-    """Raise StructureError if a state, but the rotation, stays wherever it was brought to."""
+def _neutral(system: Condensed) -> np.ndarray:
+    """Modes, but the rotation, that stay wherever they were brought to; see `Problem`.
+
+    Raises:
+        StructureError: a law sees one of them, as a torque's ripple the angle of its shaft.
+    """
     modes = system.modes
-    if not modes.angles.size:
-        return
-    turns = np.abs(modes.turns[0])
-    neutral = np.flatnonzero(still(modes.rates) & (turns > 0.0) & (turns <= _NONE * turns.max()))
-    if neutral.size:
-        shape = np.abs(modes.shapes[:, neutral[0]]) / scales(system.twin)
-        name = names_of_states(system.twin)[int(np.argmax(shape))]
+    turns = np.abs(modes.turns).max(axis=0, initial=0.0)
+    found = np.flatnonzero(still(modes.rates) & (turns <= _NONE * turns.max(initial=0.0)))
+    seen = np.abs(modes.arguments[:, found])
+    size = np.abs(modes.arguments).max(axis=1, initial=0.0)
+    wrong = found[(seen > _NONE * size[:, None]).any(axis=0)]
+    if wrong.size:
+        name = names_of_states(system.twin)[most_moved(system, int(wrong[0]))]
         raise StructureError(
-            f"{system.twin.system.name}: {name} stays wherever it was brought to before, so that "
-            "its steady state is not one alone and is not sought; take a run, in sweeps transient "
-            "ones"
+            f"{system.twin.system.name}: nothing holds {name} at a phase to the rest, and "
+            "torques depend on it, so that its steady state is not one alone and is not sought; "
+            "take a run, in sweeps transient ones"
         )
+    return found
+
+
+def most_moved(system: Condensed, mode: int) -> int:
+    """Place of the state that moves most in a mode; the first of those that move alike."""
+    shape = np.abs(system.modes.shapes[:, mode]) / scales(system.twin)
+    return int(np.argmax(shape >= (1.0 - _NONE) * shape.max()))
 
 
 def _means(tangent: np.ndarray, directions: np.ndarray) -> np.ndarray:

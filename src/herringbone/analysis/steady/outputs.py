@@ -5,13 +5,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.rigid_rotation import names_of_states
 from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time
 from herringbone.analysis.steady.harmonic_balance.orbit import Orbit
+from herringbone.analysis.steady.of_system import most_moved
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.recorded.wanted import Wanted
 
 _AT_ONCE = 1 << 22
 """Harmonics times places that are held at once."""
+_ROUNDING = 1e-10
+"""Slip over the speed that is none."""
 
 
 class Harmonics(NamedTuple):
@@ -69,9 +73,9 @@ def of_rows(structure: Structure, orbit: Orbit, wanted: Wanted, found: np.ndarra
         found: of the orbit's harmonics.
     """
     rows, response, count = wanted.rows, orbit.response, wanted.here.size
-    slope = np.zeros(len(found))
+    slope = rows.modal[:, list(structure.problem.neutral)].real @ response.slips(orbit.channels)
     if rows.turned.shape[1]:
-        slope = rows.turned[:, 0] * response.speed
+        slope += rows.turned[:, 0] * response.speed
     values = np.empty((len(wanted.columns), found.shape[1]), dtype=complex)
     slopes = np.zeros(len(wanted.columns))
     values[wanted.here], slopes[wanted.here] = found[:count], slope[:count]
@@ -97,11 +101,25 @@ def states(structure: Structure, orbit: Orbit) -> np.ndarray:
     modes = structure.core.condensed.modes
     found = in_time(orbit.response.of(modes.shapes, orbit.q), orbit.response.orders, orbit.places)
     found += modes.constant[:, None] + (modes.rigid @ modes.angles)[:, None]
+    times = np.arange(orbit.places) / orbit.places * orbit.period
+    slipping = modes.shapes[:, list(structure.problem.neutral)].real
+    found += np.outer(slipping @ orbit.response.slips(orbit.channels), times)
     if modes.angles.size:
-        times = np.arange(orbit.places) / orbit.places * orbit.period
         turned = (
             in_time(orbit.angle[None, :], orbit.response.orders, orbit.places)[0]
             + times * orbit.response.speed
         )
         found += np.outer(modes.rigid[:, 0], turned)
+    return found
+
+
+def slips(structure: Structure, orbit: Orbit) -> dict[str, float]:
+    """What turns at a speed of its own, by how much faster than with the rest [rad/s]."""
+    condensed, response = structure.core.condensed, orbit.response
+    names, found = names_of_states(condensed.twin), {}
+    for mode, slip in zip(structure.problem.neutral, response.slips(orbit.channels), strict=True):
+        place = most_moved(condensed, mode)
+        own = float(condensed.modes.shapes[place, mode].real * slip)
+        if abs(own) > _ROUNDING * abs(response.speed):
+            found[names[place]] = own
     return found

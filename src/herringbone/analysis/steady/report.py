@@ -52,6 +52,7 @@ def steady_summary(state: SteadyState | SettledState) -> dict:
             "iterations": state.orbit.iterations,
             "places": state.orbit.places,
             "drift": state.drift if state.found else None,
+            "slips": state.slips if state.found else {},
             "largest_multiplier": state.multipliers.largest if _are_cheap(state) else None,
             "bends": list(state.bends),
         }
@@ -157,6 +158,10 @@ def _of_balance(state: SteadyState) -> list[str]:
             f"  nothing holds the speed: it would change by {state.drift:.3g} rad/s2, which is left"
             " out"
         )
+    lines += [
+        f"  {name} turns by {slip:+.4g} rad/s beside the rest, at a speed where its torques balance"
+        for name, slip in state.slips.items()
+    ]
     return lines
 
 

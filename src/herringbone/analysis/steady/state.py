@@ -13,7 +13,7 @@ from herringbone.analysis.steady.harmonic_balance.floquet import Multipliers, mu
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
 from herringbone.analysis.steady.marching.shooting import Shot
 from herringbone.analysis.steady.operating_point import Point
-from herringbone.analysis.steady.outputs import Harmonics, harmonics, states
+from herringbone.analysis.steady.outputs import Harmonics, harmonics, slips, states
 from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.analysis.steady.searching.found import Settled
 from herringbone.analysis.steady.searching.guess import Guess, Neighbour
@@ -161,6 +161,14 @@ class SteadyState(PeriodicMotion):
     def channels(self) -> Mapping[str, Sequence[str]]:
         """Columns by group of channels."""
         return self.structure.core.groups()
+
+    @cached_property
+    def slips(self) -> dict[str, float]:
+        """What turns at a speed of its own, by how much faster than with the rest [rad/s].
+
+        As what a freewheel lets be overrun, for all of the period or for parts of it.
+        """
+        return slips(self.structure, self.orbit)
 
     @cached_property
     def bends(self) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ import pytest
 from support.steady import STILL
 
 import herringbone as hb
-from herringbone.core import ParameterError
+from herringbone.core import ParameterError, StructureError
 
 PAIR = Path(__file__).parents[4] / "system_models" / "ship" / "ship_pair.toml"
 
@@ -54,3 +54,10 @@ def test_a_period_of_many_meshes_at_a_slow_speed_is_said_to_be_too_long():
     assert told["message"][0].startswith(
         f"its period of 2387 meshes takes {77.0 * 2.0 * math.pi:.4g} s, longer than 100 s"
     )
+
+
+def test_ripple_behind_a_freewheel_is_refused():
+    """Its phase to the teeth is what it was before."""
+    told = r"nothing holds booster\.angle at a phase to the rest, and torques depend on it"
+    with pytest.raises(StructureError, match=told):
+        hb.steady("boosted_axle", values={"booster_machine.order_1.amplitude": 3.0})

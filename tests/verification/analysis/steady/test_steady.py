@@ -53,6 +53,27 @@ def error(state: hb.SteadyState, group: str, periods: int = PERIODS) -> float:
     return float(np.linalg.norm(values - expected) / np.linalg.norm(alternating))
 
 
+GOVERNED = {"nominal_speed": 300.0, "constant_share": 50.0, "linear_share": -50.0}
+
+
+@pytest.mark.parametrize(("governed", "torque"), [({}, 40.0), (GOVERNED, 0.0)])
+def test_a_march_stays_on_the_state_beside_a_freewheel(governed, torque):
+    """A second machine drives along, or has a speed of its own, at which its torque is zero.
+
+    The march is long: torque ripple comes in at its start, and 4 % of that die out in a period.
+    """
+    values = {f"booster_machine.{name}": value for name, value in governed.items()}
+    state = hb.steady("boosted_axle", values=values)
+    rotor, booster = state.mean("axle.rotor.flange_a.w"), state.mean("booster.flange_a.w")
+    assert state.converged
+    assert booster == pytest.approx(300.0 if governed else rotor, rel=1e-9)
+    assert state.slips == ({"booster.angle": pytest.approx(300.0 - rotor)} if governed else {})
+    assert state.harmonics(["booster.flange_a.phi"]).slope == pytest.approx(booster, rel=1e-9)
+    assert state.mean("freewheel.torque") == pytest.approx(torque, rel=1e-6, abs=1e-6)
+    for group in GROUPS:
+        assert error(state, group, 100) < state.tolerance
+
+
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
 def test_a_march_stays_on_the_state(tolerance):
     """The stated error is of single harmonics in all channels: the march differs by no more."""

@@ -28,7 +28,8 @@ class Multipliers(NamedTuple):
 
     Attributes:
         values: complex, the largest first; without those that are 1 because nothing changes when
-            all begins later, or turns at another speed where nothing holds it.
+            all begins later, turns at another speed where nothing holds it, or has another phase of
+            a neutral mode.
         shifts: how many of these were left out.
     """
 
@@ -52,7 +53,7 @@ def multipliers(problem: Problem, motion: Motion, orbit: Orbit, steps: int) -> M
     """
     found = np.linalg.eigvals(monodromy(problem, motion, orbit, steps))
     found = found[np.argsort(-np.abs(found))]
-    shifts = bool(motion.turn) + (problem.free is not None)
+    shifts = bool(motion.turn) + (problem.free is not None) + len(problem.neutral)
     trivial = np.argsort(np.abs(found - 1.0))[:shifts]
     return Multipliers(np.delete(found, trivial), shifts)
 

@@ -7,6 +7,11 @@
 Channels r are the laws' values, less mean tangents times arguments, and given signals. theta is the
 angle of a rotation as a whole; without one `turns` and `of_angle` are zero. One mode of each pair
 is there, as in `twin.condensed.modes`.
+
+A neutral mode n has no rate, and neither z nor theta' sees it, as where a freewheel engages: all
+else repeats whatever it does. Its phase is pinned, and what drives it in the mean is its slip,
+
+    q_n = phase_n + slip_n t + what vibrates,    slip_n = mean of inputs_n r
 """
 
 from dataclasses import dataclass
@@ -67,6 +72,8 @@ class Problem:
         owner: (tangents,) the value that each tangent is of.
         mean: (tangents,).
         laws: the laws.
+        neutral: modes that stay wherever they were brought to, and that nothing else sees.
+        phases: where these are in the mean.
     """
 
     rates: np.ndarray
@@ -80,6 +87,8 @@ class Problem:
     owner: np.ndarray
     mean: np.ndarray
     laws: LawsAlong
+    neutral: tuple[int, ...] = ()
+    phases: tuple[float, ...] = ()
 
     @property
     def values(self) -> int:
@@ -99,7 +108,8 @@ class Problem:
     @cached_property
     def mean_speed(self) -> np.ndarray:
         """(channels,): d theta / dt under the means of channels, where these decide on it."""
-        return (self.turns / -self.rates @ self.inputs).real
+        turning = self.turns != 0.0  # neutral modes have no rate
+        return (self.turns[turning] / -self.rates[turning] @ self.inputs[turning]).real
 
     @cached_property
     def stiff(self) -> np.ndarray:

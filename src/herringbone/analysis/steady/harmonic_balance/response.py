@@ -57,6 +57,8 @@ class Response:
             np.multiply(problem.rates.imag[:, None], per, out=self._gains[modes:])
         if self._free is not None:
             self._gains[[self._free, modes + self._free], 0] = 0.0
+        for own in problem.neutral:
+            self._gains[[own, modes + own], 0] = 0.0
         self._per_turning = np.zeros(orders.size, dtype=complex)
         self._per_turning[1:] = 1.0 / turning[1:]
 
@@ -77,6 +79,8 @@ class Response:
             rest = float(self._problem.seen_parts[-1] @ found[:, 0].real)
             mean = (self.speed - rest) / turns[self._free]
             found[self._free, 0], found[modes + self._free, 0] = mean.real, mean.imag
+        if self._problem.neutral:
+            found[list(self._problem.neutral), 0] = self._problem.phases
         return found
 
     def of(self, rows: np.ndarray, q: np.ndarray) -> np.ndarray:
@@ -107,6 +111,11 @@ class Response:
             return 0.0
         own = self._problem.inputs[self._free] @ channels[:, 0]
         return float((self._problem.turns[self._free] * own).real)
+
+    def slips(self, channels: np.ndarray) -> np.ndarray:
+        """(neutral modes,) by how much they grow, per second; see `problem`."""
+        found: np.ndarray = self._problem.inputs[list(self._problem.neutral)] @ channels[:, 0]
+        return found.real
 
     def gain(
         self, rows: np.ndarray, of_angle: np.ndarray, channels: np.ndarray, count: int

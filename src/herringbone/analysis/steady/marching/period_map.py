@@ -1,5 +1,7 @@
 """Where the condensed core is a period later: the map whose fixed points are periodic motions.
 
+Neutral modes (see `harmonic_balance.problem`) stay where they began: all else repeats beside them.
+
 The propagator of the core is exact but for its laws, so that one period is a few dozen steps. Its
 derivatives are differences of marches: what they cost is the number of coordinates times a period.
 """
@@ -56,8 +58,10 @@ class PeriodMap:
         self._values, self._begun = structure.problem.values, self._run.saved()
         self.size = 2 * self._modes.rates.size + self._modes.angles.size
         oscillating = self._modes.rates.imag != 0.0
-        self.moving = np.flatnonzero(np.concatenate([np.ones_like(oscillating), oscillating]))
-        """Coordinates besides theta that are none but 0."""
+        self._neutral, seen = list(structure.problem.neutral), np.ones_like(oscillating)
+        seen[self._neutral] = False
+        self.moving = np.flatnonzero(np.concatenate([seen, oscillating]))
+        """Coordinates besides theta that are none but 0, and that others see."""
 
     def end(self, begin: np.ndarray, period: float) -> Ended:
         """Where it is after a period [s].
@@ -77,6 +81,7 @@ class PeriodMap:
         m = self._modes.rates.size
         q = x[:m] + 1j * x[m : 2 * m]
         rate = self._modes.rates * q + self._modes.inputs @ channels
+        x[self._neutral], rate[self._neutral] = begin[self._neutral], 0.0
         turning = (self._modes.turns @ q).real
         return Ended(x, np.concatenate([rate.real, rate.imag, turning]))
 
@@ -87,7 +92,9 @@ class PeriodMap:
         for part in self._pieces(begin, period, times):
             values.append(laws_values(self._run, part)[: self._values])
             x.append(self._run.coordinates(part))
-        return Course(np.hstack(values), np.concatenate(x))
+        found = Course(np.hstack(values), np.concatenate(x))
+        found.x[:, self._neutral] = begin[self._neutral]
+        return found
 
     def jacobian(
         self, begin: np.ndarray, period: float, steps: np.ndarray, end: np.ndarray
