@@ -12,6 +12,7 @@ from herringbone.housing import write_housing
 from herringbone.housing.files.validation import housing_warnings
 from herringbone.housing.modal_model import ModalHousing
 from herringbone.housing.reduction.bound import receptance_bound
+from herringbone.housing.reduction.error import check_certificate, drive_point_errors
 from herringbone.housing.reduction.reduce import reduce_model
 from herringbone.housing.reduction.reduced_housing import (
     certified_bound,
@@ -221,6 +222,30 @@ def test_residual_matrix_is_reduced_and_written(tmp_path):
     np.testing.assert_allclose(found.static_compliance(), expected, rtol=1e-9, atol=1e-20)
     assert write_housing(found, tmp_path / "reduced") == []
     assert housing_warnings(found) == []
+
+
+def test_residual_oscillators_below_the_next_mode_are_kept():
+    """The bound holds only if all that is dropped lies above; three are amid the normal modes."""
+    frequency_hz = np.concatenate([np.linspace(300.0, 9000.0, 37), [700.0, 720.0, 740.0]])
+    shapes = 0.1 * np.random.default_rng(5).standard_normal((13, 40))
+    full = small_housing(
+        40, kind=("normal",) * 37 + ("residual",) * 3, frequency_hz=frequency_hz, shapes=shapes,
+        static=None, residual=None, gram=None, certificate={},
+    )  # fmt: skip
+    found = reduce_housing(full, band_hz=1000.0, tolerance=0.05)
+    errors = drive_point_errors(full, found, np.linspace(1.0, 1000.0, 500))
+    certificate = found.certificate
+    assert 0.0 < errors.max() <= certificate["error_bound"] <= 0.05
+    below = full.frequency_hz < certificate["next_frequency_hz"]
+    assert set(full.frequency_hz[below]) <= set(found.frequency_hz)
+    assert certificate["normal_modes"] == found.kind.count("normal") == below.sum() - 3
+
+
+def test_a_disproved_certificate_is_refused():
+    found = small_housing(certificate={"error_bound": 0.045})
+    with pytest.raises(HerringboneError, match=r"to 1000 Hz is 24433 %, above the 4\.5 % that"):
+        check_certificate(found, 1000.0, 244.33)
+    check_certificate(found, 1000.0, 0.045 + 1e-12)
 
 
 def test_negative_residual():

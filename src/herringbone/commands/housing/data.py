@@ -18,7 +18,7 @@ from herringbone.core.wording import percent
 from herringbone.housing import ModalHousing, read_housing, write_housing
 from herringbone.housing.files.file_format import DATA
 from herringbone.housing.importers import import_housing, is_matrix
-from herringbone.housing.reduction.error import drive_point_errors
+from herringbone.housing.reduction.error import check_certificate, drive_point_errors
 from herringbone.housing.reduction.reduced_housing import (
     certified_bound,
     reduce_housing,
@@ -47,6 +47,8 @@ def reduce_command(options: argparse.Namespace) -> int:
         reduced = replace(reduced, certificate={**reduced.certificate, **of})
     frequency_hz = band * np.logspace(-_DECADES, 0.0, _POINTS)
     errors = drive_point_errors(complete, reduced, frequency_hz)
+    if certified:
+        check_certificate(reduced, band, float(errors.max()))
     static = np.diag(complete.static_compliance())
     difference = float(np.abs(np.diag(reduced.static_compliance()) / static - 1.0).max())
     _write(reduced, output)

@@ -46,13 +46,13 @@ def choose_modes(
     band_hz: float,
     tolerance: float,
 ) -> tuple[int, float] | None:
-    """The least number of normal modes that certifies a tolerance.
+    """The least number of modes that certifies a tolerance.
 
     All modes up to 1.5 times the band are kept in any case: the bound speaks of the seats only,
     not of sensors and surfaces.
 
     Args:
-        frequency_hz: (n,) of known normal modes, lowest first [Hz].
+        frequency_hz: (n,) of known modes, lowest first, none left out between them [Hz].
         seat_shapes: (12, n) [kg^-1/2].
         static: (12, 12) exact static compliance [m/N].
         band_hz: highest frequency of interest [Hz].

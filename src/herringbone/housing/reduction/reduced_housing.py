@@ -25,7 +25,8 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
     """Keep the modes that a band and a tolerance ask for; the rest becomes residual modes.
 
     A residual matrix becomes pseudo modes first. The oscillators that are dropped stand for the
-    full model, so the bound of `reduction.bound` holds against the data that came in.
+    full model, so the bound of `reduction.bound` holds against the data that came in. It asks that
+    none of them lies below the first one dropped: residual oscillators below it are kept too.
 
     Args:
         housing: the full data.
@@ -38,8 +39,7 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
     before = certified_bound(housing, band_hz)
     _check_request(housing, band_hz, tolerance, before)
     full = with_residual_modes(housing)
-    normal = np.array([kind == "normal" for kind in full.kind])
-    order = np.flatnonzero(normal)[np.argsort(full.frequency_hz[normal], kind="stable")]
+    order = _order(full)
     chosen = choose_modes(
         full.frequency_hz[order],
         full.seat_shapes[:, order],
@@ -57,7 +57,7 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
     turn = np.hstack([np.eye(full.frequency_hz.size)[:, keep], turn])
     certificate = make_certificate(
         f"the data of {full.frequency_hz.size} oscillators", band_hz, tolerance, before + bound,
-        kept, float(full.frequency_hz[order[kept]]),
+        [full.kind[k] for k in keep].count("normal"), float(full.frequency_hz[order[kept]]),
     )  # fmt: skip
     return replace(
         full,
@@ -70,6 +70,14 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
         gram=None if full.gram is None else turn.T @ full.gram @ turn,
         certificate=certificate,
     )
+
+
+def _order(housing: ModalHousing) -> np.ndarray:
+    """Elastic oscillators by frequency, normal modes before others, up to the last normal one."""
+    other = np.array([kind != "normal" for kind in housing.kind])
+    order = np.lexsort((other, housing.frequency_hz))
+    order = order[housing.frequency_hz[order] > 0.0]
+    return order[: int(np.flatnonzero(~other[order]).max(initial=-1)) + 1]
 
 
 def certified_bound(housing: ModalHousing, band_hz: float) -> float:
