@@ -6,6 +6,7 @@ asks for numpy below 2.
 Source: MSC Nastran Quick Reference Guide, bulk data entries DMIG and GRID, and format of entries.
 """
 
+import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +21,8 @@ from herringbone.housing.importers.matrix_model import MatrixModel, Row, only_na
 
 _SYMMETRIC = 6
 _REAL = {1, 2}
+_SAME = 1e-6
+"""Relative difference of an element and its transpose that is rounding."""
 _SHORT, _LONG = 8, 16
 _BARE_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
 
@@ -28,8 +31,8 @@ def read_dmig(path: str | Path) -> MatrixModel:
     """Read a stiffness matrix (name begins with K) and a mass matrix (name begins with M).
 
     Raises:
-        ResourceError: not readable, malformed, complex, not symmetric by form, or not exactly one
-            matrix of each kind.
+        ResourceError: not readable, malformed, complex, not symmetric, an element given twice,
+            or not exactly one matrix of each kind.
     """
     path = Path(path)
     text = read_text(path, most=LARGEST_MODEL, ascii_only=True)
@@ -41,6 +44,8 @@ def read_dmig(path: str | Path) -> MatrixModel:
                 _read_dmig(card[1:], entries)
             elif card[0] == "GRID":
                 coordinates[whole(card[1])] = _position(card)
+        for name, matrix in entries.items():
+            _check_symmetric(matrix, name)
     except ResourceError as error:
         raise ResourceError(f"{path}: {error}") from None
     except (ValueError, IndexError) as error:
@@ -119,11 +124,28 @@ def _read_dmig(fields: list[str], entries: dict[str, dict[tuple[Row, Row], float
     for at in range(4, len(fields) - 2, 4):
         if fields[at]:
             row = (whole(fields[at]), _integer(fields[at + 1]))
+            if (row, column) in entries[name]:
+                raise ResourceError(f"DMIG {name}: {_element(row, column)} is given twice")
             entries[name][row, column] = _real(fields[at + 2])
 
 
+def _element(row: Row, column: Row) -> str:
+    return f"the element in row {row[0]},{row[1]} and column {column[0]},{column[1]} (grid,axis)"
+
+
+def _check_symmetric(matrix: dict[tuple[Row, Row], float], name: str) -> None:
+    """Refuse elements that are given on both sides of the diagonal and differ."""
+    for (row, column), value in matrix.items():
+        other = matrix.get((column, row), value)
+        if not math.isclose(value, other, rel_tol=_SAME):
+            raise ResourceError(
+                f"DMIG {name}: {_element(row, column)} is {value:g}, its transpose {other:g}; "
+                "form 6 is symmetric: give one of them"
+            )
+
+
 def _assemble(matrix: dict[tuple[Row, Row], float], rows: list[Row]) -> sp.csr_array:
-    """The full matrix; symmetric entries are given once, on either side of the diagonal."""
+    """The full matrix; a symmetric entry is given on either side of the diagonal, or on both."""
     at = {row: i for i, row in enumerate(rows)}
     found = sp.dok_array((len(rows), len(rows)))
     for (row, column), value in matrix.items():

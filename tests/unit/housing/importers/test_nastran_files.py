@@ -45,12 +45,39 @@ def test_bad_dmig(dmig):
         path.write_text(whole.replace(old, new))
         return refusal(lambda: read_dmig(path))
 
-    assert "one matrix whose name begins with M is needed; it has KAAX" in text("MAAX", "KAAX")
+    assert "whose name begins with M is needed; it has KAAX, XAAX" in text("MAAX", "XAAX")
     head = "DMIG    KAAX           0       6       2"
     assert "form 1, type 2; form 6" in text(head, head.replace("6", "1"))
     assert "form 6, type 4" in text(head, head[:-1] + "4")
     assert "DMIG KAAX has no header card" in text(head, "$")
     assert "is malformed" in text("DMIG*   MAAX" + " " * 27 + "1", "DMIG*   MAAX" + " " * 27 + "?")
+
+
+FORM_6 = """DMIG,K,0,6,2,0
+DMIG,K,1,1,,1,1,3.+8
+,2,1,-2.+8
+DMIG,K,2,1,,2,1,2.+8
+DMIG,M,0,6,2,0
+DMIG,M,1,1,,1,1,10.
+DMIG,M,2,1,,2,1,10.
+"""
+
+
+def test_dmig_elements_given_once_or_on_both_sides(tmp_path):
+    """Of form 6 an element stands on either side of the diagonal; what contradicts is refused."""
+    path = tmp_path / "model.bdf"
+    path.write_text(FORM_6 + "DMIG,K,2,1,,1,1,-2.0E8\n")
+    expected = [[3e8, -2e8], [-2e8, 2e8]]
+    np.testing.assert_array_equal(read_dmig(path).stiffness.toarray(), expected)
+    path.write_text(FORM_6 + "DMIG,K,2,1,,1,1,-1.0E8\n")
+    assert refusal(lambda: read_dmig(path)).endswith(
+        "DMIG K: the element in row 2,1 and column 1,1 (grid,axis) is -2e+08, its transpose -1e+08;"
+        " form 6 is symmetric: give one of them"
+    )
+    path.write_text(FORM_6 + "DMIG,K,1,1,,2,1,-2.0E8\n")
+    assert refusal(lambda: read_dmig(path)).endswith(
+        "DMIG K: the element in row 2,1 and column 1,1 (grid,axis) is given twice"
+    )
 
 
 @pytest.fixture
