@@ -29,12 +29,12 @@ class Dimensions:
         bolts_per_side: in a row along x on either side.
         bolt_edge_distance, bolt_end_distance: bolt centres to the base plate's edges.
         flange_thickness: of each half.
-        flange_width: beyond the walls.
+        flange_width: beyond the walls, at most boss_length.
         pinion_bore, wheel_bore: diameters.
         boss_wall: radial.
         boss_length: beyond the side wall.
         rib_thickness: along x; above and below each boss.
-        rib_depth: beyond the side wall.
+        rib_depth: beyond the side wall, at most boss_length.
         foot_height, foot_length, foot_thickness: along y, x, z.
         foot_position: |z| of the middle of a foot.
     """
@@ -129,6 +129,9 @@ class Dimensions:
             _below("the larger bore's radius", max(pinion, wheel),
                    "the lower of axis_height and cover_height", height),
             _below("the sum of the bosses' radii", bosses, "center_distance", self.center_distance),
+            # Else the bore goes on beyond the boss face, where sensors lie, or stays closed there.
+            _at_most("flange_width", self.flange_width, "boss_length", self.boss_length),
+            _at_most("rib_depth", self.rib_depth, "boss_length", self.boss_length),
             _below("2 foot_length", 2 * self.foot_length, "the box's length", length),
             _below("foot_thickness / 2", self.foot_thickness / 2, "foot_position",
                    self.foot_position),
@@ -145,3 +148,7 @@ class Dimensions:
 
 def _below(low: str, value: float, high: str, limit: float) -> tuple[bool, str]:
     return value < limit, f"{low} = {value:g} m must be less than {high} = {limit:g} m"
+
+
+def _at_most(low: str, value: float, high: str, limit: float) -> tuple[bool, str]:
+    return value <= limit, f"{low} = {value:g} m must be at most {high} = {limit:g} m"
