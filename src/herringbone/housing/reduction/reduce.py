@@ -139,20 +139,20 @@ def _enough_modes(
     progress: Tell,
 ) -> tuple[Modes, int, float]:
     """Modes, how many to keep, and the bound."""
-    size, most = len(model.seats), goal.most_modes - len(SEAT_DOFS)
-    count = _FIRST_COUNT
+    size, count = len(model.seats), _FIRST_COUNT
+    # One more than the most is needed: the bound asks for the first mode that is left out.
+    last = size if size <= goal.most_modes else goal.most_modes - len(SEAT_DOFS) + 1
     while True:
-        # One more than the most is needed: the bound asks for the first mode that is left out.
-        count = min(count, most + 1, size)
+        count = min(count, last)
         progress(f"{count} modes")
         modes = _modes(model, count, factorisation)
         seat_shapes = model.seats.T @ modes.shapes
         chosen = choose_modes(modes.frequency_hz, seat_shapes, static, goal.band_hz, goal.tolerance)
         if chosen:
             return modes, *chosen
-        if count == size <= goal.most_modes:
+        if count == size:
             return modes, size, 0.0
-        if count in {most + 1, size}:
+        if count == last:
             raise HerringboneError(
                 f"{count - 1} modes, to {modes.frequency_hz[-1]:.0f} Hz, do not certify "
                 f"{goal.band_hz:g} Hz within {goal.tolerance:g}; lower the band, or allow a larger "
@@ -163,7 +163,7 @@ def _enough_modes(
 
 def _modes(model: HeldModel, count: int, factorisation: Factorisation) -> Modes:
     stiffness, mass, _ = model
-    if stiffness.shape[0] > _DENSE:
+    if stiffness.shape[0] > max(_DENSE, count):  # the sparse solver cannot find all
         return eigenmodes(stiffness, mass, count, factorisation=factorisation)
     try:
         squares, shapes = la.eigh(
