@@ -14,6 +14,7 @@ from herringbone.core import HerringboneError
 from herringbone.core.places.paths import component_folder
 from herringbone.housing import read_housing
 from herringbone.housing.eigenmodes import Factorisation, eigenmodes
+from herringbone.housing.welded.build import build_housing
 from herringbone.housing.welded.design import read_design
 from herringbone.housing.welded.mesher import mesh_housing
 
@@ -108,6 +109,29 @@ def test_sensors(model):
     np.testing.assert_allclose(model.sensor_output() @ nodes, np.ravel(expected), atol=1e-12)
     for point, position in zip(model.points[4:], expected, strict=True):
         np.testing.assert_allclose(point.position, position, atol=1e-12)
+
+
+def test_sensors_that_lie_before_the_face_by_rounding():
+    """Taken 1.6 nm behind it: 114 mm + 41 mm by parts that are no short binary numbers."""
+    d = replace(D, boss_length=0.0413, side_wall=0.0137)
+    model = FiniteElements(replace(DESIGN, dimensions=d), mesh_housing(d, MESH_SIZE))
+    nodes = model.solid.nodes.T.ravel()[model.free]
+    expected = np.ravel([point.position for point in model.points[4:]])
+    np.testing.assert_allclose(model.sensor_output() @ nodes, expected, atol=2e-9)
+
+
+def test_sensors_outside_of_the_mesh_are_refused_before_it_is_solved():
+    """Chords of a boss of 4 mm, at ten edges around it, lie up to 2.4 mm within its outline."""
+    d = replace(D, boss_wall=0.004)
+    design = replace(DESIGN, dimensions=d, sensors=replace(DESIGN.sensors, zero_deg=41.0))
+    begun = []
+    with pytest.raises(HerringboneError) as caught:
+        build_housing(design, mesh_size=MESH_SIZE, progress=begun.append)
+    assert str(caught.value) == (
+        "a sensor on the boss face lies outside of the mesh: boss_wall = 4 mm is too thin for its "
+        "edges around the boss; take a smaller mesh size or a thicker boss_wall"
+    )
+    assert [text.split()[0] for text in begun] == ["mesh", "assemble"]
 
 
 def test_seat_stiffness(model, factorisation):

@@ -70,6 +70,7 @@ def build_housing(
     mesh = mesh_housing(design.dimensions, design.mesh_size)
     progress(f"assemble {len(mesh.tetrahedra)} tetrahedra")
     elements = FiniteElements(design, mesh)
+    sensors = elements.sensor_output()  # before the long solution: it may fail
     found = reduce_model(
         elements.stiffness,
         elements.mass,
@@ -83,7 +84,9 @@ def build_housing(
     shares = mode_shares(elements, found.frequency_hz[lowest], found.vectors[:, lowest])
     progress("surface")
     gram = found.vectors.T @ (elements.radiating_form() @ found.vectors)
-    model = _modal_housing(design, elements, found, (gram + gram.T) / 2.0, len(mesh.tetrahedra))
+    shapes = np.vstack([found.seat_shapes, sensors @ found.vectors])
+    gram = (gram + gram.T) / 2.0
+    model = _modal_housing(design, elements, found, shapes, gram, len(mesh.tetrahedra))
     return BuiltHousing(model, shares, elements.total_mass, elements.stiffness.shape[0])
 
 
@@ -91,6 +94,7 @@ def _modal_housing(
     design: HousingDesign,
     elements: "FiniteElements",
     found: Reduction,
+    shapes: np.ndarray,
     gram: np.ndarray,
     tetrahedra: int,
 ) -> ModalHousing:
@@ -100,7 +104,7 @@ def _modal_housing(
         frequency_hz=found.frequency_hz,
         damping_ratio=_damping_ratio(found, design.modes),
         points=elements.points,
-        shapes=np.vstack([found.seat_shapes, elements.sensor_output() @ found.vectors]),
+        shapes=shapes,
         valid_to_hz=design.modes.band_hz,
         damping={"model": "viscous-modal", "source": "given with the dimensions: assumed"},
         boundary="faces of the base bolt holes fixed",

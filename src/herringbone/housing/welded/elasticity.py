@@ -112,7 +112,11 @@ class Solid:
         return _blocks(products | {(b, a): matrix for (a, b), matrix in products.items()})
 
     def interpolation(self, points: np.ndarray) -> sp.csr_array:
-        """Displacements (3 p, 3 n) at points (p, 3) [m] of the solid: row `axis * p + point`."""
+        """Displacements (3 p, 3 n) at points (p, 3) [m] of the solid: row `axis * p + point`.
+
+        Raises:
+            ValueError: a point lies outside of the mesh.
+        """
         return sp.csr_array(sp.block_diag([self._basis.probes(points.T)] * 3, format="csr"))
 
     def _on(self, facets: np.ndarray) -> FacetBasis:

@@ -25,6 +25,8 @@ SENSORS = ("A", "B", "C")
 _SENSOR_STEP_DEG = 90.0
 _ON_FACE = 1e-7
 """Corners closer to a face than this [m] lie on it."""
+_BEHIND = 1.0 - 1e-8
+"""z of a point some nm behind a boss face, over that of the face."""
 PLATES = (
     "base plate", "feet", "floor", "side walls", "end walls", "cover", "flange", "bosses and ribs",
 )  # fmt: skip
@@ -82,10 +84,28 @@ class FiniteElements:
         return (*(seat.point for seat in self._seats), *sensors)
 
     def sensor_output(self) -> sp.csr_array:
-        """Displacements (9, f) of the sensors, by sensor and axis."""
-        by_axis = self.solid.interpolation(sensor_positions(self._dimensions, self._sensors))
+        """Displacements (9, f) of the sensors, by sensor and axis.
+
+        Raises:
+            HerringboneError: one lies outside of the mesh.
+        """
+        positions = sensor_positions(self._dimensions, self._sensors)
+        try:
+            by_axis = self.solid.interpolation(positions)
+        except ValueError:  # by rounding they may lie before the face
+            by_axis = self._interpolation_behind(positions)
         rows = np.arange(3 * len(SENSORS)).reshape(3, len(SENSORS)).T.ravel()
         return by_axis[rows][:, self.free]
+
+    def _interpolation_behind(self, positions: np.ndarray) -> sp.csr_array:
+        try:
+            return self.solid.interpolation(positions * (1.0, 1.0, _BEHIND))
+        except ValueError as error:
+            raise HerringboneError(
+                f"a sensor on the boss face lies outside of the mesh: boss_wall = "
+                f"{1e3 * self._dimensions.boss_wall:g} mm is too thin for its edges around the "
+                "boss; take a smaller mesh size or a thicker boss_wall"
+            ) from error
 
     def radiating_form(self) -> sp.csr_array:
         """Form (f, f) of the outer surface: integral of the products of normal components [m2]."""
