@@ -53,6 +53,7 @@ BAD = [
     ("cover = 10.0", "cover = 10.0\nlid = 3.0", "[dimensions]: lid: unknown"),
     ("[sensors]", "[gauges]", "sensors: missing"),
     ('"mm"', '"inch"', "length_unit = 'inch'; it must be one of mm, m"),
+    ('"mm"', '["mm"]', "length_unit = ['mm']; it must be one of mm, m"),
     ('"mm"', '"m"', "mesh size 16 m: it must be from 0.005 to 0.2 m"),
     ("mesh_size = 16.0", "mesh_size = 0.016", "mesh size 1.6e-05 m: it must be from 0.005"),
     ("cover = 10.0", "cover = 0.01", "cover = 1e-05 m: it must be from 0.0005 to 5 m; is length"),

@@ -226,6 +226,22 @@ def test_residual_matrix_becomes_pseudo_modes():
     assert not found.shape("A", "z")[20:].any()
 
 
+def test_residual_matrix_without_normal_modes():
+    """Pseudo modes at twice 1.5 times the band of 2 kHz; nothing is left that may be dropped."""
+    housing = small_housing(kind=("residual",) * 20, static=None, certificate={})
+    found = reduce_housing(housing, band_hz=600.0, tolerance=0.05)
+    assert set(found.frequency_hz[20:]) == {6000.0}
+    assert found.frequency_hz.size == 32
+    expected = housing.static_compliance() + housing.residual
+    np.testing.assert_allclose(found.static_compliance(), expected, rtol=1e-9, atol=1e-20)
+
+
+def test_rigid_body_modes_alone():
+    rigid = small_housing(kind=("rigid",) * 20, frequency_hz=np.zeros(20), residual=None)
+    with pytest.raises(ParameterError, match="have rigid-body modes only; there is nothing to red"):
+        reduce_housing(rigid, band_hz=600.0, tolerance=0.05)
+
+
 def test_residual_matrix_is_reduced_and_written(tmp_path):
     housing = small_housing(static=None)
     found = reduce_housing(housing, band_hz=600.0, tolerance=0.05)

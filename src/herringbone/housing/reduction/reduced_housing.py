@@ -8,6 +8,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from herringbone.core import HerringboneError, ParameterError
+from herringbone.housing.files.validation import BAND_OF_MODES
 from herringbone.housing.modal_model import SEAT_DOFS, ModalHousing
 from herringbone.housing.reduction.bound import choose_modes, make_certificate, receptance_bound
 from herringbone.housing.reduction.held_model import HeldModel
@@ -34,7 +35,8 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
         tolerance: see `reduction.bound.choose_modes`.
 
     Raises:
-        ParameterError: band or tolerance out of range, or beyond what the data are good for.
+        ParameterError: band or tolerance out of range, or beyond what the data are good for, or
+            no elastic oscillator.
     """
     before = certified_bound(housing, band_hz)
     _check_request(housing, band_hz, tolerance, before)
@@ -92,6 +94,8 @@ def certified_bound(housing: ModalHousing, band_hz: float) -> float:
 
 
 def _check_request(housing: ModalHousing, band_hz: float, tolerance: float, before: float) -> None:
+    if housing.residual is None and not housing.frequency_hz.any():
+        raise ParameterError("the data have rigid-body modes only; there is nothing to reduce")
     if not 0.0 < band_hz < math.inf:
         raise ParameterError(f"band {band_hz:g} Hz must be positive")
     if not 0.0 < tolerance < 1.0:
@@ -139,7 +143,8 @@ def with_residual_modes(
 
     Args:
         housing: the data; returned as they are if there is no residual matrix.
-        frequency_hz: of the pseudo modes [Hz]; twice the highest normal mode if not given.
+        frequency_hz: of the pseudo modes [Hz]; if not given, twice the highest normal mode, or
+            without one twice the frequency to which the band asks for modes.
         damping_ratio: of the pseudo modes [1].
 
     Raises:
@@ -147,8 +152,7 @@ def with_residual_modes(
     """
     if housing.residual is None:
         return housing
-    normal = housing.frequency_hz[[kind == "normal" for kind in housing.kind]]
-    at = _ABOVE * float(normal.max()) if frequency_hz is None else frequency_hz
+    at = _ABOVE * _highest_normal(housing) if frequency_hz is None else frequency_hz
     values, directions = la.eigh((housing.residual + housing.residual.T) / 2.0)
     if values[0] < -1e-9 * values[-1]:
         raise HerringboneError(
@@ -170,6 +174,12 @@ def with_residual_modes(
         residual=None,
         gram=None if housing.gram is None else la.block_diag(housing.gram, no_motion),
     )
+
+
+def _highest_normal(housing: ModalHousing) -> float:
+    """Highest normal mode [Hz]; without one, where the data's band asks for modes to end."""
+    normal = housing.frequency_hz[[kind == "normal" for kind in housing.kind]]
+    return float(normal.max()) if normal.size else BAND_OF_MODES * housing.valid_to_hz
 
 
 def with_static_compliance(housing: ModalHousing, static: np.ndarray) -> ModalHousing:

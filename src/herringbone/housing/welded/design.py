@@ -139,7 +139,7 @@ def read_design(file: str | Path) -> HousingDesign:
     }
     _check_keys(data, known, str(file))
     unit = data["length_unit"]
-    if unit not in _UNITS:
+    if not isinstance(unit, str) or unit not in _UNITS:
         raise ParameterError(
             f"{file}: length_unit = {unit!r}; it must be one of {', '.join(_UNITS)}"
         )
