@@ -63,6 +63,7 @@ def test_one_relief_is_that_of_both_gears(tmp_path):
         ('["5 um", 0.0]', "[0, 5]", r"1.43e\+03 times .*write '5 um'"),
         ("[table]", "[mesh]\nbacklash = 180\n[table]", "write '180 um'"),
         ("[modif", "density = 7.85\n[modif", "between 500 and 25000 kg/m3; write '7.85 g/cm3' if"),
+        ("[modif", "density = 7.85e-9\n[modif", "write '7.85e-09 t/mm3' if that is meant"),
         ("[modif", "youngs_modulus = 206\n[modif", r"1e\+12 Pa; write '206 GPa' if that is meant"),
         ("[modif", "youngs_modulus = 2.06e5\n[modif", "write '206000 MPa' if that is meant"),
         ("[modif", "youngs_modulus = '2.06e9 MPa'\n[modif", r"= 2.06e\+15 Pa must .*1e\+12 Pa$"),

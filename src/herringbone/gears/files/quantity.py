@@ -11,7 +11,7 @@ UNITS: Mapping[str, Mapping[str, str]] = {
     "length": {"m": "1", "mm": "1e-3", "um": "1e-6", "mum": "1e-6"},
     "angle": {"rad": "1", "deg": "0.017453292519943295", "°": "0.017453292519943295"},
     "stress": {"Pa": "1", "MPa": "1e6", "GPa": "1e9", "N/mm2": "1e6", "N/mm^2": "1e6"},
-    "density": {"kg/m3": "1", "kg/m^3": "1", "kg/dm^3": "1e3", "g/cm3": "1e3"},
+    "density": {"kg/m3": "1", "kg/m^3": "1", "kg/dm^3": "1e3", "g/cm3": "1e3", "t/mm3": "1e12"},
     "torque": {"N m": "1", "Nm": "1", "kN m": "1e3", "kNm": "1e3"},
     "force": {"N": "1", "kN": "1e3"},
     "number": {"": "1", "1": "1", "none": "1", "-": "1"},

@@ -6,6 +6,7 @@ from numbers import Integral, Real
 from typing import TYPE_CHECKING
 
 from herringbone.core import ParameterError
+from herringbone.core.materials import DENSITY, MODULUS, meant, out_of_range
 from herringbone.gears.geometry.given import full_root_fillet
 
 if TYPE_CHECKING:
@@ -17,11 +18,6 @@ _OPTIONAL = {
     "center_distance", "profile_shift_coefficient", "root_fillet_radius_coefficient",
     "tip_radius", "groove_diameter",
 }  # fmt: skip
-_MATERIAL = {
-    "youngs_modulus": (1e8, 1e12, "Pa", {"GPa": 1e9, "MPa": 1e6}),
-    "density": (500.0, 25e3, "kg/m3", {"g/cm3": 1e3}),
-}
-"""Bounds of what gears are made of, the unit, and units that may be meant without being said."""
 _ROUNDING = 0.01
 """Backlash that published dimensions may lack by rounding, in modules."""
 
@@ -68,15 +64,12 @@ def _check_numbers(pair: "GearPair") -> None:
 
 
 def _check_material(pair: "GearPair") -> None:
-    for name, (least, most, unit, others) in _MATERIAL.items():
+    for name, known in (("youngs_modulus", MODULUS), ("density", DENSITY)):
         value = getattr(pair, name)
-        if least <= value <= most:
-            continue
-        meant = (other for other, si in others.items() if least <= value * si <= most)
-        hint = "".join(f"; write '{value:g} {other}' if that is meant" for other in [*meant][:1])
-        raise ParameterError(
-            f"{name} = {value:g} {unit} must lie between {least:g} and {most:g} {unit}{hint}"
-        )
+        if problem := out_of_range(name, value, known):
+            other = meant(value, known)
+            hint = f"; write '{value:g} {other[0]}' if that is meant" if other else ""
+            raise ParameterError(problem + hint)
 
 
 def _check_angles(pair: "GearPair") -> None:

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from herringbone.core import ParameterError
+from herringbone.core.materials import DENSITY, MODULUS, meant, out_of_range
 from herringbone.core.reading.structured import read_toml
 from herringbone.housing.welded.dimensions import Dimensions
 
@@ -45,9 +46,12 @@ class Material:
 
     def problem(self) -> str | None:
         """What makes the material impossible, if anything."""
-        for name, unit in (("young_modulus", "Pa"), ("density", "kg/m3")):
-            if not 0.0 < getattr(self, name) < math.inf:
-                return f"{name} = {getattr(self, name):g} {unit}: it must be positive"
+        for name, known in (("young_modulus", MODULUS), ("density", DENSITY)):
+            value = getattr(self, name)
+            if problem := out_of_range(name, value, known):
+                other = meant(value, known)
+                hint = f"; write {other[1]:g} if {value:g} {other[0]} are meant" if other else ""
+                return problem + hint
         if not 0.0 <= self.poisson_ratio < 0.5:
             return f"poisson_ratio = {self.poisson_ratio:g}: it must be from 0 to below 0.5"
         return None
