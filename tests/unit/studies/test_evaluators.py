@@ -7,6 +7,9 @@ import pytest
 from support.studies import Cheap
 
 import herringbone as hb
+from herringbone.analysis.steady.searching.remarks import GROWS
+from herringbone.analysis.steady.solver import SteadySolver
+from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import ParameterError
 from herringbone.studies.evaluators import steady
 from herringbone.studies.evaluators.levels import moments, order_amplitudes, order_figures
@@ -114,3 +117,47 @@ def test_what_is_no_motion_has_no_figures():
     assert table["message"].str.contains("no steady rotation").tolist() == [True, True, False]
     assert "at most 2.327e+05 rad/s" in table["message"][2]
     assert list(table.columns) == ["point", "torque", "speed", "outcome", "message"]
+
+
+def test_a_motion_that_a_run_would_leave_is_no_steady_point():
+    """Ripple of the motor at both mesh orders parts light teeth: a multiplier of 2.4 at 300 N m."""
+    values = {
+        "machine.order_1.order": 27.0,
+        "machine.order_2.order": 54.0,
+        "rotor.inertia": 0.002,
+        "gearbox.gear_mesh.mesh_damping_ratio": 0.01,
+        "road.constant_share": 0.1,
+    }
+    ripple = "machine.order_1.amplitude"
+    found = hb.sweep("e_axle", vary={ripple: [100.0, 300.0]}, values=values, workers=1)
+    assert found.table["outcome"].tolist() == ["steady", "unstable"]
+    settled, left = found.table["message"]
+    assert not settled
+    assert left.startswith("unstable: small deviations grow")
+    assert "laws bend within the period: gearbox.gear_mesh" in left
+    levels = found.table["bearing_force.rms"]
+    assert levels[0] == pytest.approx(53.2, rel=1e-2)
+    assert math.isnan(levels[1])
+
+
+def test_shooting_that_follows_a_branch_keeps_its_figures_where_a_run_would_leave_it(monkeypatch):
+    solve = SteadySolver.solve
+    monkeypatch.setattr(SteadySolver, "solve", lambda *given: solve(*given).noted([GROWS]))
+    even = {"gear_mesh.symmetry_deviation": 0.0}
+    for solver, has_figures in (("auto", False), ("shooting", True)):
+        asked = hb.Steady(solver=solver)
+        found = hb.sweep("test_rig", speed=[100.0], values=even, evaluator=asked, workers=1).table
+        assert found["outcome"].tolist() == ["unstable"]
+        assert ("bearing_force.rms" in found) == has_figures
+
+
+def test_a_point_tells_why_it_is_not_as_fine_as_asked_and_after_what_it_repeats(monkeypatch):
+    solve = SteadySolver.solve
+    notes = ("subharmonic: it repeats after 2 periods",)
+    monkeypatch.setattr(SteadySolver, "solve", lambda *given: solve(*given).noted(notes))
+    wanted = {"speed": [100.0], "torque": [150.0], "workers": 1}
+    assert hb.sweep("gearbox", **wanted).table["message"].tolist() == list(notes)
+    monkeypatch.setattr(SteadyState, "converged", False)
+    told = hb.sweep("gearbox", **wanted).table
+    assert told["outcome"].tolist() == ["not_converged"]
+    assert told["message"][0].endswith(f"0.001 was asked for; {notes[0]}")

@@ -12,11 +12,12 @@ from herringbone.analysis.set_points import SPEED, TORQUE, set_point
 from herringbone.analysis.steady.of_runs.settled import SettledState
 from herringbone.analysis.steady.operating_point import Point as SteadyPoint
 from herringbone.analysis.steady.searching.guess import Guess, Neighbour
+from herringbone.analysis.steady.searching.remarks import GROWS
 from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed
 from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.analysis.steady.solver import AUTO, SteadySolver
-from herringbone.analysis.steady.state import BALANCE, SteadyState
-from herringbone.core import ParameterError
+from herringbone.analysis.steady.state import BALANCE, SHOOTING, SteadyState
+from herringbone.core import OutcomeKind, ParameterError
 from herringbone.running.loading import load_scene, system_and_folder
 from herringbone.running.operating.asked_tolerance import asked_tolerance
 from herringbone.running.operating.commanded import commanded, with_known_values
@@ -32,6 +33,7 @@ from herringbone.studies.evaluators.levels import (
 from herringbone.studies.study import Point
 
 STEADY, UNSETTLED = "steady", "not_converged"
+UNSTABLE = OutcomeKind.UNSTABLE.value
 """Outcomes of a point."""
 
 
@@ -106,20 +108,21 @@ class _States:
         if not found.found:
             return Evaluated(UNSETTLED, "; ".join(found.notes))
         if not found.converged:
-            message = f"the error is {found.errors.worst:.2g}, {found.tolerance:g} was asked for"
+            error = f"the error is {found.errors.worst:.2g}, {found.tolerance:g} was asked for"
+            message = "; ".join([error, *found.notes])
             return Evaluated(UNSETTLED, message, figures_of(found, self._asked.columns))
-        bends = found.bends
-        told = [f"laws bend within the period: {', '.join(bends)}"] if bends else []
-        told += [f"found by {found.solver}"] if found.solver != BALANCE else []
+        left = _Near(found.neighbour, solver, prepared, first)
+        told = [*found.notes, *_told(found)]
+        outcome = UNSTABLE if GROWS in found.notes else STEADY
+        if outcome == UNSTABLE and self._asked.solver != SHOOTING:
+            return Evaluated(outcome, "; ".join(told), state=left)  # no run has its figures
         figures = figures_of(found, self._asked.columns)
         if self._asked.sensitivities is not None:
             try:
                 figures |= self._sensitivities(found, self._asked.sensitivities)
             except ParameterError as error:
                 told.append(str(error))
-        return Evaluated(
-            STEADY, "; ".join(told), figures, _Near(found.neighbour, solver, prepared, first)
-        )
+        return Evaluated(outcome, "; ".join(told), figures, left)
 
     def _from(self, near: _Near, at: dict[str, float], values: Point) -> SteadyState:
         changed = {n: float(v) for n, v in values.items() if near.values[n] != v}
@@ -192,6 +195,13 @@ def figures_of(state: SteadyState | SettledState, columns: Sequence[str]) -> dic
     figures[PERIOD] = Figure(float(state.meshes) if known else np.nan, "1")
     figures["error"] = Figure(state.error, "1")
     return figures
+
+
+def _told(found: SteadyState) -> list[str]:
+    """What there is to say of a motion besides its notes."""
+    bends = found.bends
+    told = [f"laws bend within the period: {', '.join(bends)}"] if bends else []
+    return told + ([f"found by {found.solver}"] if found.solver != BALANCE else [])
 
 
 def _is_given(found: Any) -> bool:  # noqa: ANN401
