@@ -138,9 +138,12 @@ def _reversed(structure: Structure, point: Point) -> tuple[str, ...]:
 def _guesses(structure: Structure, near: Neighbour | None, point: Point) -> list[tuple[int, Guess]]:
     """Periods of a neighbour, and what leads on from it: a line to the point, and its own motion.
 
-    None where its period is no whole number of those of the structure.
+    None where its period is no whole number of those of the structure, or where its laws are not
+    those of the structure: some values, such as a clearance of 0, leave out a law.
     """
     if near is None or near.meshes % structure.meshes:
+        return []
+    if len(near.guess.values) != structure.problem.values:
         return []
     times, ahead = near.meshes // structure.meshes, near.towards(point)
     every = [ahead] if ahead is near.guess else [ahead, near.guess]

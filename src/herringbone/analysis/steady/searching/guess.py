@@ -73,6 +73,8 @@ class Neighbour(NamedTuple):
         before = self.before
         if before is None or before.meshes != self.meshes:
             return self.guess
+        if len(before.guess.values) != len(self.guess.values):
+            return self.guess
         if not (share := _share(before.point, self.point, point)):
             return self.guess
         values, orders, per_mesh = self.guess
