@@ -101,17 +101,19 @@ class _States:
         if near is None or not _renewable(near.values, values):
             near = self._begun(point)
         found = self._from(near, at, values)
-        if not found.found and found.on_other_flank and near.state is not None:
+        if not found.found and near.first != point:  # of another flank, or too far from its start
             near = self._begun(point)
             found = self._from(near, at, values)
-        _, solver, prepared, first = near
         if not found.found:
             return Evaluated(UNSETTLED, "; ".join(found.notes))
         if not found.converged:
             error = f"the error is {found.errors.worst:.2g}, {found.tolerance:g} was asked for"
             message = "; ".join([error, *found.notes])
             return Evaluated(UNSETTLED, message, figures_of(found, self._asked.columns))
-        left = _Near(found.neighbour, solver, prepared, first)
+        return self._row(found, near._replace(state=found.neighbour))
+
+    def _row(self, found: SteadyState, left: _Near) -> Evaluated:
+        """Of a motion that has converged, with what it leaves its neighbour."""
         told = [*found.notes, *_told(found)]
         outcome = UNSTABLE if GROWS in found.notes else STEADY
         if outcome == UNSTABLE and self._asked.solver != SHOOTING:

@@ -57,6 +57,18 @@ def test_sweeps_go_through_zero():
         assert rms == pytest.approx(np.sqrt(np.mean(_squares(own))), rel=1e-3)
 
 
+def test_sweeps_over_a_value_that_reverses_the_torque_have_the_states_of_their_points():
+    """The first on each flank to the last bit; the last one within the tolerance of both."""
+    loads = [-1.0, 0.2, 1.0]
+    found = hb.sweep("e_axle", vary={"road.constant_share": loads}, workers=1)
+    assert found.table["outcome"].tolist() == ["steady"] * 3
+    for load, rms, off in zip(
+        loads, found.table["bearing_force.rms"], (1e-12, 1e-12, 2e-3), strict=True
+    ):
+        own = hb.steady("e_axle", values={"road.constant_share": load})
+        assert rms == pytest.approx(np.sqrt(np.mean(_squares(own))), rel=off)
+
+
 def _squares(state):
     amplitudes = state.amplitudes("bearing_force")
     return 0.5 * np.sum(np.square(np.abs(amplitudes[:, 1:])), axis=1)
