@@ -31,6 +31,7 @@ from herringbone.studies.evaluators.steady import Steady
 from herringbone.studies.evaluators.transient import Transient
 from herringbone.studies.keys import base_settings
 from herringbone.studies.leaner import leaner_notes
+from herringbone.studies.one_way import one_way_notes
 from herringbone.studies.study import SET_POINTS, Study, Value, grid
 from herringbone.studies.sweep import Asked, Sweep, computed
 from herringbone.studies.working.executors import Workers
@@ -80,8 +81,8 @@ def sweep(
         parquet: write the table as Parquet as well.
         output: folder; what it has of the study is not computed again. None: nothing is kept.
         overwrite: the table of another study in the folder may be replaced.
-        told: called with lines on what is ahead, on gears and housings, and on what is not known of
-            a leaner model.
+        told: called with lines on what is ahead, on gears and housings, on what is not known of a
+            leaner model, and on how wrong housings are that are driven one way.
         progress: True for a bar; or called with the number of points that were done since.
 
     Returns:
@@ -126,7 +127,8 @@ def sweep(
     own = with_options(chosen_scene, values=wishes.values)
     files = with_files(structure, own, wishes, folder)
     leaner = leaner_notes(chosen_scene.model, study, changed_by(wishes), own_point(known))
-    for line in (*files.notes, *files.of_fmus, *said, *leaner):
+    one_way = one_way_notes(known, study, base)
+    for line in (*files.notes, *files.of_fmus, *said, *leaner, *one_way):
         told(line)
     settings = base_settings(base, chosen)
     asked = Asked(
