@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.set_points import SPEED, TORQUE
-from herringbone.analysis.steady.set_points import Point as SteadyPoint
+from herringbone.analysis.steady.operating_point import Point as SteadyPoint
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.structure.system import System
