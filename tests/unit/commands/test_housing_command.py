@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from support.housing import small_housing
 
 from herringbone.commands import main as cli
+from herringbone.commands.housing import data as housing_data
 from herringbone.core.places.paths import component_folder
 from herringbone.housing import read_housing, write_housing
 from herringbone.housing.reduction.error import drive_point_errors
@@ -41,6 +42,15 @@ def test_reduce(data, capsys):
     errors = drive_point_errors(full, reduced, np.linspace(1.0, 600.0, 50))
     assert 0.0 < errors.max() <= bound <= 0.3
     assert f"error certified below {100 * bound:.2g} % of the static compliance" in out
+
+
+def test_a_certificate_that_the_data_disprove_is_not_written(data, monkeypatch, capsys):
+    monkeypatch.setattr(housing_data, "drive_point_errors", lambda *_: np.array([[244.33]]))
+    assert cli.main(["housing", "reduce", "data", "--band", "600", "-o", "out"]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "the error against the data up to 600 Hz is 24433 %, above the " in said.err
+    assert not list(data.parent.glob("out/*"))
 
 
 def test_reduce_data_with_a_residual_matrix(here, capsys):
