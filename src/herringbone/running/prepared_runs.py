@@ -9,7 +9,6 @@ from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core import OutcomeKind
 from herringbone.core.energy_report import Verdict
 from herringbone.core.process.activity import activity
-from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
@@ -23,6 +22,7 @@ from herringbone.running.reporting.progress import Progress
 from herringbone.running.reporting.run_result import compared
 from herringbone.running.steps.error_by_steps import can_be_verified, verified_by_other_steps
 from herringbone.running.steps.for_tolerance import by_default, for_tolerance
+from herringbone.running.steps.grown import with_doubt
 from herringbone.running.steps.step_search import searched, searched_tolerance
 from herringbone.running.steps.verification import check_fixed_step, verified
 from herringbone.scenes import Scene
@@ -124,19 +124,19 @@ def coupled_run(
         result = verified(result, system, scene, found, asked, progress)
     elif can_be_verified(system, result, found, asked):
         result = verified_by_other_steps(result, system, scene, found, asked)
-    return _explained(result, system, found)
+    return _explained(with_doubt(result, system), system, found)
 
 
 def _explained(result: Result, system: System, found: Coupled) -> Result:
     """The result with what grows in it and what helps, if it is unstable."""
-    if not _unstable(found.recording) or found.recording.core is not None:
+    if not _unstable(result) or found.recording.core is not None:
         return result
     with activity(f"looking for what grows in {system.name}, and for remedies"):
         why_unstable = diagnose(system, found.algorithm, found.recording.step)
     return replace(result, info=replace(result.info, why=why_unstable))
 
 
-def _unstable(recording: Recording) -> bool:
-    """True if a run diverged, or its coupling was seen to add energy without end."""
-    energy = recording.energy
-    return recording.outcome.unstable or (energy is not None and energy.verdict is Verdict.UNSTABLE)
+def _unstable(result: Result) -> bool:
+    """True if a run diverged, or its coupling was seen to add energy or to grow without end."""
+    energy = result.info.energy
+    return result.outcome.unstable or (energy is not None and energy.verdict is Verdict.UNSTABLE)

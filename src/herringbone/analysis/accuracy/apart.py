@@ -6,12 +6,32 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.accuracy.error import relative_error
+from herringbone.cosim.divergence import AS_BEFORE
 from herringbone.result.result import TIME, Result
 
 _FEWEST = 2
 """Records of which anything can be said."""
 _CONSTANT = 1e-9
 """Alternating part over the size of a channel below which it is rounding."""
+_BEYOND = 100.0
+"""Multiple of the better run's largest value, beyond which a run has outgrown it. What the model
+itself makes grow differs as the start of the growth does: by 2^p, if that errs with the power p."""
+_ROWS = 8
+"""Rows of which anything can be said about growth."""
+
+
+class Outgrown(NamedTuple):
+    """An output that has grown far beyond a better run.
+
+    Attributes:
+        output: its name.
+        value: the largest in the last quarter of the run, in its unit.
+        times: rms of its group there, over the largest value of the group in the better run.
+    """
+
+    output: str
+    value: float
+    times: float
 
 
 class Apart(NamedTuple):
@@ -39,6 +59,31 @@ def apart(first: Result, second: Result, exchanged: Collection[str] = ()) -> Apa
     if len(ours) < _FEWEST:
         return Apart({}, "", 0.0)
     return differences(ours, theirs, second.signals, groups_of(second, exchanged))
+
+
+def outgrown(first: Result, second: Result, exchanged: Collection[str] = ()) -> Outgrown | None:
+    """What of a run has grown without bound where a better one has not; None: nothing.
+
+    In the last quarter a group is far beyond all that the better run has, and beyond ten times what
+    it was in the first half itself: what drifts by a power of time is not, up to the third. A
+    motion that truly grows does so in both runs.
+
+    Args:
+        first, second, exchanged: as of `apart`.
+    """
+    ours, theirs = (np.abs(values) for values in _common(first, second))
+    rows = len(ours)
+    if rows < _ROWS:
+        return None
+    names, found = second.signals, []
+    for columns in groups_of(second, exchanged).values():
+        own = [names.index(column) for column in columns]
+        begun, ended = ours[: rows // 2 + 1, own].max(), ours[3 * rows // 4 :, own]
+        size, most = float(np.sqrt(np.mean(ended**2, axis=0).max())), float(theirs[:, own].max())
+        if most > 0.0 and size > max(_BEYOND * most, AS_BEFORE * begun):
+            output = columns[int(ended.max(axis=0).argmax())]
+            found.append(Outgrown(output, float(ended.max()), size / most))
+    return max(found, key=lambda one: one.times, default=None)
 
 
 def differences(

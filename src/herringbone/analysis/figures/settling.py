@@ -17,6 +17,8 @@ from herringbone.core.declaring.units import R_MIN
 from herringbone.core.wording import option, percent
 from herringbone.result.result import TIME, Result
 
+NOT_SETTLED = "not settled: "
+"""How the lines begin."""
 _MUCH = 0.05
 _FEWEST_ROWS = 80
 _FEWEST_PERIODS = 8.0
@@ -41,7 +43,7 @@ def unsettled(result: Result) -> list[str]:
     """
     if moving := moving_speed(result):
         return [
-            f"not settled: {moving}, and levels are those of all these speeds; use a longer "
+            f"{NOT_SETTLED}{moving}, and levels are those of all these speeds; use a longer "
             f"{option('t_end')}, or look at orders over speed (herringbone plot)"
         ]
     found = changes(result)
@@ -52,7 +54,7 @@ def unsettled(result: Result) -> list[str]:
         return []
     verb = "change" if name.startswith("outputs") else "changes"
     said = (
-        f"not settled: {name.replace('_', ' ')} {verb} by {percent(change)} of its alternating "
+        f"{NOT_SETTLED}{name.replace('_', ' ')} {verb} by {percent(change)} of its alternating "
         "part from the third to the last quarter of the run"
     )
     return [f"{said}; {_advice(result)}"]

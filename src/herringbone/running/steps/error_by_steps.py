@@ -25,6 +25,7 @@ from herringbone.result.verification import Verification, error_unknown
 from herringbone.running.coupled import Coupled
 from herringbone.running.coupling_choice import Asked
 from herringbone.running.reporting.run_result import with_coupling_row
+from herringbone.running.steps.grown import GrownError, as_unstable, refuse_grown
 from herringbone.running.steps.verification import scaled, with_half_step, with_step
 from herringbone.scenes import Scene
 
@@ -58,6 +59,8 @@ def verified_by_other_steps(
 ) -> Result:
     """The result with its error by other steps, which cost once to twice and a half as much again.
 
+    It is unstable if it has grown beyond the run with half the step.
+
     Args:
         result: of the run.
         system, scene: of the run.
@@ -75,6 +78,8 @@ def verified_by_other_steps(
         verification = others.by_half(twice) or others.by_longer(twice)
     except _StoppedError as stopped:
         return result.noted(error_unknown(stopped.outcome, "a run with another step"))
+    except GrownError as grown:
+        return as_unstable(result, grown.found)
     if verification is None:
         return result.noted(
             "the error is not known: with half the step and with twice the step no run ends well"
@@ -157,9 +162,16 @@ class _Others:
         return found.result if outcome.ended_well else None
 
     def _halved(self, end: float, own: Result | None = None) -> Apart | None:
-        """Differences from the run with half the step up to a time [s]; None: it is not taken."""
-        half = self.run(0.5, end)
-        return None if half is None else self._apart(own or self.result, half)
+        """Differences from the run with half the step up to a time [s]; None: it is not taken.
+
+        Raises:
+            GrownError: the run has grown beyond that one.
+        """
+        half, own = self.run(0.5, end), own or self.result
+        if half is None:
+            return None
+        refuse_grown(own, half, self.found.exchanged)
+        return self._apart(own, half)
 
     def _first_part(self) -> float:
         """End of the part over which half the step is taken first [s]."""

@@ -8,7 +8,7 @@ have in common, such as an FMU's own integration, does not show.
 
 from dataclasses import replace
 
-from herringbone.analysis.accuracy.apart import Apart, apart
+from herringbone.analysis.accuracy.apart import Apart, apart, outgrown
 from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity
@@ -20,6 +20,7 @@ from herringbone.running.coupled import Coupled, coupled
 from herringbone.running.coupling_choice import Asked
 from herringbone.running.reporting.progress import Progress
 from herringbone.running.reporting.run_result import with_coupling_row
+from herringbone.running.steps.grown import as_unstable
 from herringbone.scenes import Scene
 
 _LONGER = 4.0 / 3.0
@@ -52,6 +53,8 @@ def verified(
 ) -> Result:
     """The result with its error by half the step; a line where that run does not end well.
 
+    It is unstable if it has grown beyond that run.
+
     Args:
         result: of the run.
         system, scene: of the run.
@@ -66,6 +69,8 @@ def verified(
     finer = with_half_step(system, scene, found, asked, progress).result
     if not finer.outcome.ended_well:
         return result.noted(error_unknown(finer.outcome, HALVED))
+    if (grown := outgrown(result, finer, found.exchanged)) is not None:
+        return as_unstable(result, grown)
     differences = apart(result, finer, found.exchanged)
     verification = scaled(differences, _LONGER, step, "by half the macro step and inner steps")
     return with_coupling_row(replace(result, verification=verification))

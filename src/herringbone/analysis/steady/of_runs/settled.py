@@ -8,7 +8,12 @@ from typing import NoReturn
 
 import numpy as np
 
-from herringbone.analysis.figures.settling import changes, moving_speed, settling_groups
+from herringbone.analysis.figures.settling import (
+    NOT_SETTLED,
+    changes,
+    moving_speed,
+    settling_groups,
+)
 from herringbone.analysis.steady.of_runs.ending import Ending, ending_of
 from herringbone.analysis.steady.outputs import Harmonics
 from herringbone.analysis.steady.periodic import PeriodicMotion
@@ -19,8 +24,6 @@ from herringbone.core.wording import percent
 from herringbone.result.result import Result
 
 UNTOLD = "multipliers, bends and sensitivities are not known: foreign parts show no equations"
-_OF_A_RUN = "not settled: "
-"""How the run's own line begins, which advises options that it has not been given by hand."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -75,7 +78,8 @@ class SettledState(PeriodicMotion):
     @property
     def notes(self) -> tuple[str, ...]:
         """Lines that the user should read."""
-        said = [line for line in self.run.info.notes if not line.startswith(_OF_A_RUN)]
+        # the run's own line advises options that it has not been given by hand
+        said = [line for line in self.run.info.notes if not line.startswith(NOT_SETTLED)]
         return (*said, *self.unsettled, *self.ending.notes, UNTOLD)
 
     @property

@@ -1,0 +1,56 @@
+"""A coupling that grows where no energy is watched: in play, nothing damps at the start.
+
+Two masses of 1 kg, beyond 5 mm of play a spring of 4e4 N/m between them: sqrt(2 k / m) = 283 rad/s.
+"""
+
+import pytest
+from support.foreign.kinds import build_kinds
+from support.foreign.strangers import write_system
+
+import herringbone as hb
+from herringbone.core import OutcomeKind
+
+VALUES = {"one.k": 100.0, "two.k": 1000.0, "one.ko": 4e4, "one.gap": 5e-3, "one.v0": 0.5}
+OMEGA = 283.0
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("play")
+    kinds = build_kinds(folder, "oscillator_play.c", "oscillator_mass.c")
+    joined = [["one.fo", "two.f"], ["two.x", "one.xo"]]
+    files = {"one": kinds / "oscillator_play.fmu", "two": kinds / "oscillator_mass.fmu"}
+    return write_system(folder, "play", joined, files)
+
+
+def run(system, algorithm, step, **asked):
+    return hb.run(
+        system, algorithm=algorithm, step=step, record_step=step, t_end=0.5, start="rest",
+        values=VALUES, **asked,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("asked", [{}, {"verify": True}])
+def test_growth_beyond_half_the_step_is_unstable(system, asked):
+    """At omega h = 1.2 held forces grow without bound; the most there is is a wave k v / omega."""
+    found = run(system, "jacobi:order=2", 1.2 / OMEGA, **asked)
+    assert found.outcome.kind is OutcomeKind.UNSTABLE
+    assert found.info.energy is None
+    assert found.data[found.outcome.culprit].abs().max() > 1e3 * 4e4 * 0.5 / OMEGA
+    assert "times the most that half the step gives" in found.outcome.message
+    assert not any("not settled" in note for note in found.info.notes)
+    assert found.budget == ()
+
+
+def test_bounded_motion_completes(system):
+    """Contacts scatter the error, and nothing grows."""
+    found = run(system, "li:degree=3", 0.2 / OMEGA)
+    assert found.outcome.completed
+    assert found.data["one.fo"].abs().max() < 2.0 * 4e4 * 0.5 / OMEGA
+    assert not any("is not watched" in note for note in found.info.notes)
+
+
+def test_a_line_where_nothing_tells(system):
+    found = run(system, "jacobi:order=2", 0.2 / OMEGA, probe=False)
+    (line,) = (note for note in found.info.notes if "is not watched" in note)
+    assert line.endswith("nothing tells whether the coupling is stable")
