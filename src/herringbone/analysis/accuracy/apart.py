@@ -103,19 +103,29 @@ def differences(
     """
     place = {name: number for number, name in enumerate(names)}
     spread = np.std(theirs, axis=0)
-    varies = spread > _CONSTANT * np.abs(theirs).max(axis=0, initial=0.0)
+    moves = spread > _CONSTANT * np.abs(theirs).max(axis=0, initial=0.0)
     found = {}
     for name, columns in groups.items():
         own = [place[column] for column in columns]
-        size = np.abs(theirs[:, own]).max(initial=0.0)
-        if spread[own].max(initial=0.0) > max(least, _CONSTANT * size):
+        if varies(theirs[:, own], least):
             found[name] = relative_error(ours[:, own], theirs[:, own])
     off = np.sqrt(np.mean((ours - theirs) ** 2, axis=0))
-    single = np.where(varies, off / np.where(varies, spread, 1.0), 0.0)
+    single = np.where(moves, off / np.where(moves, spread, 1.0), 0.0)
     if not single.any():
         return Apart(found, "", 0.0)
     worst = int(single.argmax())
     return Apart(found, names[worst], float(single[worst]))
+
+
+def varies(values: np.ndarray, least: float = 0.0) -> bool:
+    """True if a group alternates by more than rounding.
+
+    Args:
+        values: (times, channels), the same unit in all channels.
+        least: alternating part, in its unit, that is none.
+    """
+    size, spread = np.abs(values).max(initial=0.0), np.std(values, axis=0).max(initial=0.0)
+    return bool(spread > max(least, _CONSTANT * size))
 
 
 def groups_of(result: Result, exchanged: Collection[str] = ()) -> dict[str, list[str]]:

@@ -4,8 +4,9 @@ What the parts themselves err is in both, and does not show.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
+from herringbone.analysis.accuracy.apart import outputs_in, varies
 from herringbone.analysis.accuracy.error import Rows, errors_by_group
 from herringbone.core import HerringboneError, OutcomeKind
 from herringbone.core.part import Part, closing_all
@@ -16,12 +17,12 @@ from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import simulate
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
+from herringbone.cosim.units import own_unit
 
 _FINER = 4
 """The reference's steps in the shortest step of the runs, at the least."""
 _SHARED = 4
 """So many times more steps than that are made, if one run then serves all."""
-_ALL = "outputs"
 
 
 class Converged:
@@ -33,7 +34,8 @@ class Converged:
         grids: communication points of the runs.
 
     Attributes:
-        groups: columns by channel group; all connected outputs if the system names no channels.
+        groups: columns by channel group; all connected outputs by unit if the system names no
+            channels.
         note: what the reference is.
 
     Raises:
@@ -48,8 +50,12 @@ class Converged:
             network = build_network(system, parts)
             repeats = all(p.addresses.can_restore for p in parts)
             names = list(network.exchanged)
+            sources = [(network.parts[c.source], c.output) for c in network.connections]
+            units = {
+                f"{part.name}.{name}": own_unit(part.variables[name]) for part, name in sources
+            }
         self._algorithm: Algorithm = LI(degree=4) if repeats else Jacobi(order=2)
-        self.groups = in_groups(system.paths, names, system.channels) or {_ALL: names}
+        self.groups = in_groups(system.paths, names, system.channels) or _by_unit(names, units)
         most = max(grid.count for grid in grids)
         common = math.lcm(*(grid.count for grid in grids))
         self._fewest = _FINER * most
@@ -63,13 +69,17 @@ class Converged:
         )
 
     def errors(self, recording: Recording) -> dict[str, float]:
-        """Relative error by channel group; infinite if the run ended early."""
+        """Relative error by channel group; infinite if the run ended early.
+
+        Groups that do not vary are left out, if others do.
+        """
         if not recording.outcome.reached_end:
             return dict.fromkeys(self.groups, math.inf)
         count = len(recording.time) - 1
         finer, every = self._at(count, float(recording.time[-1]))
         run, exact = (Rows(r.values[::k], r.names) for r, k in ((recording, 1), (finer, every)))
-        return errors_by_group(self.groups, run, exact)
+        moving = {name: own for name, own in self.groups.items() if varies(exact.of(own))}
+        return errors_by_group(moving or self.groups, run, exact)
 
     def _at(self, count: int, t_end: float) -> tuple[Recording, int]:
         """A finer run, and every how many of its rows are the points of a run of so many steps."""
@@ -88,3 +98,11 @@ class Converged:
                 )
             self._runs[rows] = run
         return self._runs[rows], rows // count
+
+
+def _by_unit(names: Sequence[str], units: Mapping[str, str]) -> dict[str, list[str]]:
+    """Outputs by unit, as a run tells its error."""
+    groups: dict[str, list[str]] = {}
+    for name in names:
+        groups.setdefault(outputs_in(units[name]), []).append(name)
+    return groups
