@@ -166,7 +166,7 @@ class SteadyState(PeriodicMotion):
     def slips(self) -> dict[str, float]:
         """What turns at a speed of its own, by how much faster than with the rest [rad/s].
 
-        As what a freewheel lets be overrun, for all of the period or for parts of it.
+        As what may be overrun is, for all of the period or for parts of it.
         """
         return slips(self.structure, self.orbit)
 

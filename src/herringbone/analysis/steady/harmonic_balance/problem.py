@@ -8,7 +8,7 @@ Channels r are the laws' values, less mean tangents times arguments, and given s
 angle of a rotation as a whole; without one `turns` and `of_angle` are zero. One mode of each pair
 is there, as in `twin.condensed.modes`.
 
-A neutral mode n has no rate, and neither z nor theta' sees it, as where a freewheel engages: all
+A neutral mode n has no rate, and neither z nor theta' sees it, as where a shaft engages again: all
 else repeats whatever it does. Its phase is pinned, and what drives it in the mean is its slip,
 
     q_n = phase_n + slip_n t + what vibrates,    slip_n = mean of inputs_n r
