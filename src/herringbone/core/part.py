@@ -40,6 +40,7 @@ class PartVariable:
         own_unit: of a signal that is converted to SI units: its own unit, the factor and the
             offset; it is recorded in that.
         starts: no input or parameter, but its value at the start may be set.
+        relative: a difference, as of two temperatures; its dimension has no offset.
     """
 
     name: str
@@ -54,6 +55,7 @@ class PartVariable:
     items: tuple[tuple[str, int], ...] = ()
     own_unit: tuple[str, float, float] | None = None
     starts: bool = False
+    relative: bool = False
 
     @property
     def is_real(self) -> bool:

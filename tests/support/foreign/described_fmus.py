@@ -38,6 +38,7 @@ def make_fmu(file, variables, fmi_version="2.0", newton='kg="1" m="1" s="-2"'):
 <fmiModelDescription fmiVersion="{fmi_version}" modelName="{identifier}" guid="{identifier}">
 <CoSimulation modelIdentifier="{identifier}"/>
 <UnitDefinitions><Unit name="N"><BaseUnit {newton}/></Unit>
+<Unit name="degC"><BaseUnit K="1" offset="273.15"/></Unit>
 <Unit name="m"><BaseUnit m="1"/></Unit><Unit name="kg"><BaseUnit kg="1"/></Unit></UnitDefinitions>
 <ModelVariables>{variables}</ModelVariables><ModelStructure/></fmiModelDescription>"""
     with zipfile.ZipFile(file, "w") as archive:

@@ -50,6 +50,7 @@ def read_fmu(file: str | Path) -> ModelDescription:
         model = read_model_description(_repacked(root), validate=False)
         _check_names(model)
         _check_numbers(model)
+        _take_differences(model, root)
     except Exception as error:  # fmpy raises bare Exception for every defect of the XML
         raise FmuError(
             f"{file}: {_DESCRIPTION} cannot be read: {error or type(error).__name__}"
@@ -113,6 +114,18 @@ def _check_numbers(model: ModelDescription) -> None:
     times = (experiment.startTime, experiment.stopTime, experiment.stepSize) if experiment else ()
     for text in times:
         number(str(text or 0))
+
+
+def _take_differences(model: ModelDescription, root: Element) -> None:
+    """Note which variables are differences: fmpy asks elements for the attribute in vain."""
+    told: dict[str | None, bool] = {}
+    for variable in root.iterfind("ModelVariables/*"):
+        for element in (variable, *variable):  # the kind of FMI 2.0, or aliases of 3.0
+            if (word := element.get("relativeQuantity")) is not None:
+                names = (variable.get("name"), *(a.get("name") for a in variable.iterfind("Alias")))
+                told |= dict.fromkeys(names, word in {"true", "1"})
+    for v in model.modelVariables:
+        v.relativeQuantity = told.get(v.name)
 
 
 def is_fmi3(model: ModelDescription) -> bool:

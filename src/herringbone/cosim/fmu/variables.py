@@ -1,7 +1,7 @@
 """Variables of an FMU as a master sees them: scalars, and the elements of arrays."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -87,7 +87,7 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
     The array of a signal's nodes is shown as these are called in FMI 2.0. An output may depend on
     states or the time, too: inputs are what it passes on.
     """
-    dimension = _dimension(model)
+    definitions = _definitions(model)
     dependencies = {
         u.variable.name: None
         if u.dependencies is None
@@ -101,13 +101,14 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
             name,
             reference,
             v.causality or "local",
-            unit := v.unit or (v.declaredType.unit if v.declaredType else None),
-            dimension.get(unit or ""),
+            _unit(v),
+            _dimension(v, definitions),
             dependencies.get(v.name),
             v.type,
             array=v.name if v.dimensions and name != v.name else "",
             items=_items(v),
             starts=v.causality in {None, "local", "output"} and v.initial == "exact",
+            relative=_relative(v),
         )
         for name, reference, v in _named(model)
     }
@@ -161,7 +162,25 @@ def _items(variable: ModelVariable) -> tuple[tuple[str, int], ...]:
         ) from None
 
 
-def _dimension(model: ModelDescription) -> dict[str, tuple]:
+def _unit(variable: ModelVariable) -> str | None:
+    """Unit of a variable, or of the type that it declares."""
+    declared = variable.declaredType
+    return variable.unit or (declared.unit if declared else None)
+
+
+def _relative(variable: ModelVariable) -> bool:
+    """True for a difference, by the variable or, where it says nothing, by its type."""
+    declared, own = variable.declaredType, variable.relativeQuantity
+    return bool(declared and declared.relativeQuantity if own is None else own)
+
+
+def _dimension(variable: ModelVariable, definitions: Mapping[str, tuple]) -> tuple | None:
+    """Definition of a variable's unit; that of a difference has no offset (FMI 3.0)."""
+    found = definitions.get(_unit(variable) or "")
+    return (found[0], 0.0, found[2]) if found and _relative(variable) else found
+
+
+def _definitions(model: ModelDescription) -> dict[str, tuple]:
     """Factor, offset and base-unit exponents by unit name."""
     found = {}
     for unit in model.unitDefinitions:

@@ -41,15 +41,18 @@ def add_units(
 ) -> None:
     """The units of all connectors, as their FMUs define them."""
     found: dict[str, tuple] = {}
-    for part, names in zip(parts, connectors, strict=True):
-        for variable in (part.variables[name] for name in names):
-            if variable.unit is None or variable.dimension is None:
-                continue
-            if found.setdefault(variable.unit, variable.dimension) != variable.dimension:
-                raise StructureError(
-                    f"{part.name}.{variable.name}: unit '{variable.unit}' is defined otherwise in "
-                    "another FMU; rename one"
-                )
+    pairs = zip(parts, connectors, strict=True)
+    every = [(part, part.variables[name]) for part, names in pairs for name in names]
+    for part, variable in sorted(every, key=lambda pair: pair[1].relative):
+        if variable.unit is None or variable.dimension is None:
+            continue
+        factor, offset, powers = found.setdefault(variable.unit, variable.dimension)
+        known = (factor, 0.0 if variable.relative else offset, powers)
+        if known != variable.dimension:
+            raise StructureError(
+                f"{part.name}.{variable.name}: unit '{variable.unit}' is defined otherwise in "
+                "another FMU; rename one"
+            )
     if not found:
         return
     units = SubElement(root, "ssd:Units")

@@ -23,7 +23,9 @@ def write(folder, kind="CoSimulation", more=""):
     text = f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="3.0" modelName="m" instantiationToken="t">
 <{kind} modelIdentifier="model"/>
-<UnitDefinitions><Unit name="mm"><BaseUnit m="1" factor="0.001"/></Unit></UnitDefinitions>
+<UnitDefinitions><Unit name="mm"><BaseUnit m="1" factor="0.001"/></Unit>
+<Unit name="degC"><BaseUnit K="1" offset="273.15"/></Unit></UnitDefinitions>
+<TypeDefinitions><Float64Type name="Rise" unit="degC" relativeQuantity="true"/></TypeDefinitions>
 <ModelVariables>
 <Float64 name="u" valueReference="3" causality="input" start="2" unit="mm"/>
 <Float64 name="u.node" valueReference="4" causality="input" start="2" unit="mm">
@@ -65,6 +67,23 @@ def test_what_is_declared(tmp_path):
     assert (variables["u.node2"].array, variables["y"].array) == ("u.node", "")
     assert variables["file"].type == "String"
     assert [variables[kind].type for kind in KINDS] == list(KINDS)
+
+
+def test_the_unit_of_a_difference_has_no_offset(tmp_path):
+    """By the variable, or by its type unless the variable says otherwise."""
+    told = {
+        "T": 'unit="degC"',
+        "dT": 'unit="degC" relativeQuantity="true"',
+        "rise": 'declaredType="Rise"',
+        "T_of_type": 'declaredType="Rise" relativeQuantity="false"',
+    }
+    more = "".join(
+        f'<Float64 name="{name}" valueReference="{50 + k}" causality="output" {more}/>'
+        for k, (name, more) in enumerate(told.items())
+    )
+    variables = read_variables(read_fmu(write(tmp_path, more=more)))
+    offsets = {name: variables[name].dimension[1] for name in told}
+    assert offsets == {"T": 273.15, "dT": 0.0, "rise": 0.0, "T_of_type": 273.15}
 
 
 def test_what_has_a_start_value(tmp_path):

@@ -11,6 +11,13 @@ from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import PartSpec, System
 
 TWO_WAYS = ELEMENT.replace(' unit="N"', "").replace("force", "y").replace(' unit="m"', "")
+TEMPERATURE = """
+<ScalarVariable name="T" valueReference="0" causality="output"><Real unit="degC"/></ScalarVariable>
+"""
+RISE = """
+<ScalarVariable name="dT" valueReference="1" causality="output">
+<Real unit="degC" relativeQuantity="true"/></ScalarVariable>
+"""
 UNITS = (
     '<ssd:Units><ssc:Unit name="rpm"><ssc:BaseUnit rad="1" s="-1" factor="0.1047"/></ssc:Unit>'
     '<ssc:Unit name="r/min"><ssc:BaseUnit rad="1" s="-1" factor="0.1047" m="0"/></ssc:Unit>'
@@ -74,3 +81,15 @@ def test_units_with_two_meanings_are_refused(fmus, tmp_path):
     system = System("two", "", (PartSpec("first", "element"), PartSpec("second", "other")), ())
     with pytest.raises(StructureError, match=r"second\.force: unit 'N' is defined otherwise"):
         write_ssp(system, fmus, tmp_path / "x.ssp", step=1e-5, t_end=1.0)
+
+
+@pytest.mark.parametrize("more", [RISE, RISE + TEMPERATURE, TEMPERATURE + RISE])
+def test_a_difference_has_no_other_unit(tmp_path, more):
+    """A unit's offset is that of the absolute variables, wherever they stand."""
+    fmus = {"heat": make_fmu(tmp_path / "heat.fmu", more)}
+    system = System("one", "", (PartSpec("heat", "heat"),), ())
+    write_ssp(system, fmus, tmp_path / "x.ssp", step=1e-5, t_end=1.0)
+    with zipfile.ZipFile(tmp_path / "x.ssp") as archive:
+        text = archive.read(SSD).decode()
+    assert ('<ssc:BaseUnit K="1" offset="273.15" />' in text) == (TEMPERATURE in more)
+    assert text.count('K="1"') == 1
