@@ -6,12 +6,13 @@ from dataclasses import dataclass, field, replace
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.part import Part
 from herringbone.core.places.part_path import PartPath, find_part
+from herringbone.cosim.fmu.values import REALS
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.joining import Place, joined
 from herringbone.cosim.structure.roles import find_roles
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.structure.types import fits, rounds
-from herringbone.cosim.structure.units import unit_conversion
+from herringbone.cosim.structure.units import conversion_by_definitions, unit_conversion
 
 MOST_MULTIPLE = 100
 """Most macro steps that a slow body may wait."""
@@ -128,7 +129,10 @@ def build_network(system: System, parts: Sequence[Part]) -> Network:
             connections.append(_connection(output, input_, index, unchecked))
     for wheres in unchecked.values():
         more = f" and {len(wheres) - 1} more between these parts" if len(wheres) > 1 else ""
-        notes.append(f"connection {wheres[0]}{more}: a unit is not declared, so it was not checked")
+        notes.append(
+            f"connection {wheres[0]}{more}: a unit is not declared, so it was not checked; what "
+            "has none is taken as SI"
+        )
     _check_single_sources(connections, parts)
     others = tuple(c for c in connections if not _of_doubles(c, parts))
     connections = [c for c in connections if c not in others]
@@ -169,7 +173,8 @@ def _connection(
     factor, offset = 1.0, 0.0
     if source.unit is not None and target.unit is not None:
         factor, offset = unit_conversion(source, target, where)
-    elif source.is_real or target.is_real:
+    elif {source.type, target.type} & REALS:
+        factor, offset = conversion_by_definitions(source, target, where)
         between = tuple(sorted((output[0].name, input_[0].name)))
         unchecked.setdefault(between, []).append(where)
     place, other = index[output[0].name], index[input_[0].name]

@@ -1,5 +1,7 @@
 """Units of connected variables."""
 
+import math
+
 from herringbone.core import StructureError
 from herringbone.core.part import PartVariable
 
@@ -14,7 +16,8 @@ def unit_conversion(source: PartVariable, target: PartVariable, where: str) -> t
         where: the connection, for messages.
 
     Raises:
-        StructureError: the units measure different things, or one is not defined.
+        StructureError: the units measure different things, or one is not defined, or by numbers
+            that are no conversion.
     """
     if source.unit == target.unit:
         return 1.0, 0.0
@@ -24,9 +27,31 @@ def unit_conversion(source: PartVariable, target: PartVariable, where: str) -> t
             f"connection {where}: units differ, '{source.unit}' and '{target.unit}', and "
             f"'{missing}' has no definition by base units to convert by"
         )
-    (factor, offset, powers), (own, start, wanted) = source.dimension, target.dimension
-    if powers != wanted:
+    if source.dimension[2] != target.dimension[2]:
         raise StructureError(
             f"connection {where}: units differ, '{source.unit}' and '{target.unit}'"
         )
+    return conversion_by_definitions(source, target, where)
+
+
+def conversion_by_definitions(
+    source: PartVariable, target: PartVariable, where: str
+) -> tuple[float, float]:
+    """Factor and offset from an output to an input; what has no unit is in SI units.
+
+    Raises:
+        StructureError: a definition is no conversion.
+    """
+    factor, offset = _to_si(source, where)
+    own, start = _to_si(target, where)
     return factor / own, (offset - start) / own
+
+
+def _to_si(variable: PartVariable, where: str) -> tuple[float, float]:
+    factor, offset = variable.dimension[:2] if variable.dimension else (1.0, 0.0)
+    if factor == 0.0 or not (math.isfinite(factor) and math.isfinite(offset)):
+        raise StructureError(
+            f"connection {where}: unit '{variable.unit}' has the factor {factor:g} and the offset "
+            f"{offset:g} to SI units; no value can be converted"
+        )
+    return factor, offset

@@ -115,7 +115,33 @@ def test_unit_without_definition_is_refused():
 def test_undeclared_unit_is_noted():
     parts = [FakePart("p").real("y", "output", "N"), FakePart("q").real("u", "input", None)]
     (note,) = network(parts, ("p.y", "q.u")).notes
-    assert note == "connection 'p.y' -> 'q.u': a unit is not declared, so it was not checked"
+    said = "a unit is not declared, so it was not checked; what has none is taken as SI"
+    assert note == f"connection 'p.y' -> 'q.u': {said}"
+
+
+def test_a_definition_that_is_no_conversion_is_refused():
+    nothing = (0.0, 0.0, (("rad", 1), ("s", -1)))
+    parts = [
+        FakePart("p").real("y", "output", None),
+        FakePart("q").real("u", "input", "r/min", type="Float32", dimension=nothing),
+    ]
+    refused("unit 'r/min' has the factor 0 and the offset 0 to SI", parts, ("p.y", "q.u"))
+
+
+@pytest.mark.parametrize(("output", "input_"), [("Float32", "Float64"), ("Float32", "Float32")])
+def test_single_precision_without_unit_is_taken_as_si(output, input_):
+    """As Float64 is: 3000 r/min are 314.16 at an input without unit, and the other way round."""
+    rpm = (math.pi / 30.0, 0.0, (("rad", 1), ("s", -1)))
+    parts = [
+        FakePart("p").real("y", "output", "r/min", type=output, dimension=rpm),
+        FakePart("q").real("u", "input", None, type=input_).real("y", "output", None, type=output),
+        FakePart("r").real("u", "input", "r/min", type=input_, dimension=rpm),
+    ]
+    found = network(parts, ("p.y", "q.u"), ("q.y", "r.u"))
+    there, back = (c.converted(3000.0) for c in found.others)
+    assert there == pytest.approx(100.0 * math.pi, rel=1e-15)
+    assert back == pytest.approx(9e4 / math.pi, rel=1e-15)
+    assert len(found.notes) == 2
 
 
 @pytest.mark.parametrize(

@@ -165,24 +165,24 @@ def test_connected_types_hold_over_a_step(all_types, name, algorithm):
 
 
 def test_integers_reach_wider_types_and_reals(all_types):
-    """A real input takes them at communication points, also beside those of the loop."""
+    """A real input takes them at communication points, also beside those of the loop; as SI."""
     wide = [("a.events", "b.Int64_in"), ("a.events", "b.d"), ("a.Int16_out", "b.Float32_in")]
     values = {"a.every": 0.1, "a.Int16_in": -7}
     result = run(two(all_types["plain"], *wide), values, t_end=1.0, step=0.05)
     assert result.data["b.Int64_out"].iloc[-1] == 9
     assert result.data["b.d_out"].iloc[-1] == 9.0
-    assert result.data["b.Float32_out"].iloc[-1] == np.float32(-7.0)
+    assert result.data["b.Float32_out"].iloc[-1] == np.float32(-7e3)  # mm
 
 
 def test_doubles_reach_single_precision_rounded(all_types):
-    """With a line; what is too large is refused."""
+    """With a line; what is too large is refused. The input is in mm, the output without unit."""
     rounded = two(all_types["plain"], ("a.d_out", "b.Float32_in"))
     result = run(rounded, {"a.d": 0.1}, step=0.05)
-    assert result.data["b.Float32_out"].iloc[-1] == np.float32(0.1)
+    assert result.data["b.Float32_out"].iloc[-1] == np.float32(100.0)
     said = "connection 'a.d_out' -> 'b.Float32_in': Float64 values are rounded to the 24 bits of a"
     assert f"{said} Float32" in result.info.notes
-    said = "b.Float32_in = 1e+39: it is too large for a Float32"
-    refused(said, rounded, {"a.d": 1e39}, step=0.05)
+    said = "b.Float32_in = 7e+38: it is too large for a Float32"
+    refused(said, rounded, {"a.d": 7e35}, step=0.05)
 
 
 @pytest.mark.parametrize("name", ["plain", "events"])
