@@ -33,11 +33,12 @@ def wrapped_angles(
         variables: of them (m).
         taken: names of those that are connected.
         times: of the records (n,) [s].
-        values: recorded, in the units of the variables (n, m).
+        values: recorded, in the variables' own units (n, m).
     """
 
     def in_si(k: int) -> np.ndarray:
-        factor, offset, _ = variables[k].dimension or (1.0, 0.0, ())
+        v = variables[k]
+        factor, offset = v.own_unit[1:] if v.own_unit else (v.dimension or (1.0, 0.0))[:2]
         return factor * values[:, k] + offset
 
     place = {name: k for k, name in enumerate(names)}

@@ -152,10 +152,15 @@ def test_wrapped_angle_is_noticed(tmp_path, mass, unit):
     assert notes[0].endswith("; nothing is connected to it")
 
 
-def test_what_a_wrapped_angle_does_to_others(tmp_path, mass):
-    file, _ = mass(*named("N.m", "rad", "rad/s"))
-    result = run(system(tmp_path / "s", file, file), {"wrap": 1.0}, t_end=0.1)
+@pytest.mark.parametrize(("angle", "speed"), [("rad", "rad/s"), ("deg", "rad/s"), ("rad", "r/min")])
+def test_what_a_wrapped_angle_does_to_others(tmp_path, mass, angle, speed):
+    """In any units; the two turn at 92.5 rad/s together, once in 67.9 ms."""
+    file, sizes = mass(*named("N.m", angle, speed))
+    plain, _ = mass(*named("N.m", "rad", "rad/s"))
+    folder, values = system(tmp_path / "s", file, plain), {**sizes, "wrap": 1.0}
+    result = run(folder, values, t_end=0.068, record_step=1e-3)
     (note,) = (note for note in result.info.notes if "wraps its angle" in note)
+    assert note.startswith("one.flange.phi jumps by a turn at 0.068 s: ")
     assert "what is connected to it is twisted by 2 pi" in note
 
 
