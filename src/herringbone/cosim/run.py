@@ -92,6 +92,7 @@ class Run:
         checkpoints = Checkpoints(self)
         if self.checkpoint is not None:
             done, before = checkpoints.take_up(self.checkpoint)
+        status = self._exchange_others(done)  # outputs may change as initialisation ends
         begin, worked = time.perf_counter() - before, time.thread_time()
         with InterruptFlag() as flag:
             while done < self.grid.count and status == DONE and not flag.raised:

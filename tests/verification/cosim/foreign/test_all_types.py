@@ -164,6 +164,16 @@ def test_connected_types_hold_over_a_step(all_types, name, algorithm):
     assert any("held over the step" in note for note in result.info.notes)
 
 
+@pytest.mark.parametrize("name", ["plain", "events"])
+def test_what_shows_after_initialisation_acts_in_the_first_step(all_types, name):
+    """a gives 7 when its initialisation has ended, not before; b shows it a step later."""
+    system = two(all_types[name], ("a.Int8_out", "b.Int8_in"), ("a.Int8_out", "b.u[1]"))
+    result = run(system, {"a.Int8_in": 7}, t_end=0.3, record_step=0.1, step=0.1)
+    assert result.data["a.Int8_out"].tolist() == [7] * 4
+    assert result.data["b.Int8_out"].tolist() == [0, 7, 7, 7]
+    assert result.data["b.y[1]"].tolist() == pytest.approx([0.0, 0.7, 1.4, 2.1], rel=1e-14)
+
+
 def test_integers_reach_wider_types_and_reals(all_types):
     """A real input takes them at communication points, also beside those of the loop; as SI."""
     wide = [("a.events", "b.Int64_in"), ("a.events", "b.d"), ("a.Int16_out", "b.Float32_in")]
@@ -187,11 +197,13 @@ def test_doubles_reach_single_precision_rounded(all_types):
 
 @pytest.mark.parametrize("name", ["plain", "events"])
 def test_value_that_is_refused_ends_the_run_with_its_results(all_types, name):
-    system = two(all_types[name], ("a.UInt64_out", "b.UInt64_in"), ("a.y", "b.u"))
-    values = {"a.UInt64_in": 13, "a.u": [1.0, 2.0]}
+    """By way of b, which shows it a step later."""
+    around = [("a.UInt32_out", "b.UInt32_in"), ("b.UInt32_out", "a.UInt64_in")]
+    system = two(all_types[name], *around, ("a.y", "b.u"))
+    values = {"a.UInt32_in": 13, "a.u": [1.0, 2.0]}
     result = run(system, values, t_end=1.0, step=0.1, algorithm="li")
-    assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.PART_FAILED, "b")
-    assert result.outcome.message == "b.UInt64_in = 13: 13 is refused, at 0.1 s"
+    assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.PART_FAILED, "a")
+    assert result.outcome.message == "a.UInt64_in = 13: 13 is refused, at 0.1 s"
     assert result.data["a.y[2]"].tolist() == pytest.approx([0.0, 0.2], rel=1e-12)
 
 
