@@ -5,7 +5,7 @@
    4 UInt16, 5 Int32, 6 UInt32, 7 Int64, 8 UInt64, 9 Boolean, 10 String, 11 Binary, 12 Enumeration
    (Int64), 13 Float32. An output shows what the input was in the last step, or before the first.
 
-   Structural parameter 200: n, at most 4. Float64: input u[n] (201), output y[n] (202), dy/dt = u;
+   Structural parameter 200: n, at most 4; setting it sets u[3] = 3, u[4] = 4. Float64: input u[n] (201), output y[n] (202), dy/dt = u;
    parameter m[2,2] (203), output of it transposed (204). Int32: input pair[2] (205), output of it
    the other way round (206).
    Events: parameter 210, every so many seconds, 0 never; output 211, Int32, counts them; they are
@@ -195,6 +195,7 @@ EXPORT Status fmi3SetUInt64(void *c, const Reference *vr, size_t n, const uint64
         if (!part->configuring) return refuse(part, "n is set in configuration mode");
         if (value[0] > MOST) return refuse(part, "n is at most 4");
         part->values.n = value[0];
+        for (int k = 2; k < MOST; ++k) part->values.u[k] = k + 1;
         return OK;
     }
     if (may_set_discrete(part) != OK) return ERROR;

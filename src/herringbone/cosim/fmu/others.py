@@ -14,9 +14,10 @@ from herringbone.core.names import shown
 from herringbone.core.part import Value
 from herringbone.cosim.fmu.file import is_fmi3
 from herringbone.cosim.fmu.values import INTEGERS, number
-from herringbone.cosim.fmu.variables import Element, read_others
+from herringbone.cosim.fmu.variables import Element, read_others, untold_starts
 
 _WORDS = {"true": True, "1": True}
+_SET = {"input", "parameter"}
 _Place = tuple[str, int]
 """What follows `get` and `set` of a variable, and its value reference."""
 
@@ -49,6 +50,17 @@ class OtherValues:
         """What a variable was set to last, or its declared start value."""
         element = self._elements[name]
         return self._last(element)[element.place]
+
+    def take_starts(self, slave: Any) -> None:  # noqa: ANN401 (fmpy)
+        """Remember start values that the FMU alone knows; raises FMICallException."""
+        elements = [
+            e
+            for e in self._elements.values()
+            if e.variable.causality in _SET and untold_starts(e.variable)
+        ]
+        found = self.read(slave, [e.name for e in elements])
+        for element, value in zip(elements, found, strict=True):
+            self._last(element)[element.place] = value
 
     def changed(self, values: Mapping[str, Value]) -> dict[str, Value]:
         """Those that are not what was set last."""

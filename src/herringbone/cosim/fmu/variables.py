@@ -114,6 +114,20 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
     }
 
 
+def untold_starts(variable: ModelVariable) -> bool:
+    """True for an array whose start values the FMU alone knows, as after its size was set.
+
+    Of texts and bytes fmpy reads the first one.
+    """
+    size = math.prod(variable.shape or ())
+    if not variable.dimensions or size < 2:
+        return False
+    return variable.type in {"String", "Binary"} or len(str(variable.start or "0").split()) not in {
+        1,
+        size,
+    }
+
+
 def changes(model: ModelDescription) -> bool:
     """True if an instance may change its model, see `resized`: each then needs one of its own."""
     return any(v.causality == STRUCTURE for v in model.modelVariables)

@@ -29,6 +29,12 @@ class Slave:
     def setBoolean(self, references, values):
         self.calls.append(("Boolean", references, list(values)))
 
+    def setInt32(self, references, values):
+        self.calls.append(("Int32", references, list(values)))
+
+    def getInt32(self, references, count):
+        return list(range(7, 7 + count))
+
     def getInteger(self, references):
         return [10 + reference for reference in references]
 
@@ -62,6 +68,23 @@ def test_variables_of_two_types_with_one_reference_are_two(others):
     assert (others.last("steps"), others.last("on")) == (3, True)
     others.write(slave, {"steps": 1})
     assert others.changed({"on": False, "steps": 1}) == {"on": False}
+
+
+def test_start_values_that_are_not_declared_are_those_of_the_fmu(tmp_path):
+    """Two are declared of three; one element is set, the others stay."""
+    text = """<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="3.0" modelName="m" instantiationToken="t">
+<CoSimulation modelIdentifier="model"/><ModelVariables>
+<Int32 name="k" valueReference="1" causality="parameter" variability="fixed" start="7 8">
+<Dimension start="3"/></Int32></ModelVariables><ModelStructure/></fmiModelDescription>"""
+    file = tmp_path / "x.fmu"
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("modelDescription.xml", text)
+        archive.writestr(f"binaries/{fmpy.platform_tuple}/model{fmpy.sharedLibraryExtension}", b"")
+    others, slave = OtherValues(read_fmu(file)), Slave()
+    others.take_starts(slave)
+    others.write(slave, {"k[2]": 77})
+    assert slave.calls == [("Int32", [1], [7, 77, 9])]
 
 
 def test_aliases_are_all_read(others):

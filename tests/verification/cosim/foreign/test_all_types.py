@@ -97,6 +97,17 @@ def test_structural_parameter_resizes_arrays(all_types):
     assert "p.y[3]" not in run(alone(all_types["plain"]), {}).data
 
 
+def test_elements_leave_the_others_as_the_fmu_has_them(all_types):
+    """The size that is set makes start values that are not declared, u = 0, 0, 3, 4 here."""
+    for values, expected in (
+        ({"u[2]": 9.5}, [0.0, 9.5, 3.0, 4.0]),
+        ({"u[2]": 9.5, "u": "1 2 3 5", "u[1]": 7.0}, [7.0, 2.0, 3.0, 5.0]),
+    ):
+        result = run(alone(all_types["plain"]), {"n": 4, **values}, record_step=0.5)
+        found = [result.data[f"p.y[{k}]"].iloc[-1] for k in (1, 2, 3, 4)]
+        np.testing.assert_allclose(found, expected, rtol=1e-14)
+
+
 def test_values_of_toml_and_command_line(all_types, tmp_path, capsys):
     (tmp_path / "system.toml").write_text(
         f'[parts.p]\nfmu = "{all_types["plain"]}"\n'

@@ -24,7 +24,7 @@ from herringbone.cosim.fmu.fmi3.updates import inputs_within
 from herringbone.cosim.fmu.functions import KnownFunctions
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.part import FmuPart
-from herringbone.cosim.fmu.variables import Element, read_elements, resized
+from herringbone.cosim.fmu.variables import Element, read_elements, resized, untold_starts
 
 _WARNING = 1
 _CALLBACK = fmi3IntermediateUpdateCallback
@@ -73,6 +73,8 @@ class Fmu3Part(FmuPart):
 
     def _load(self, **options: str) -> FMU3Slave:
         self._initialised = self._told = False
+        self._untold = {v.name for v in self.model.modelVariables if untold_starts(v)}
+        self._waiting: dict[str, Value] = {}
         self._memory = np.zeros(1, memory.MEMORY)
         self._within = inputs_within(self.model, Path(options["unzipDirectory"]))
         self._make_memory(read_elements(self.model))
@@ -199,12 +201,28 @@ class Fmu3Part(FmuPart):
     def _resize(self, name: str, size: int) -> None:
         """Arrays whose size is a structural parameter have another one now."""
         self.variables = resized(self.model, name, size)
+        self._untold = {v.name for v in self.model.modelVariables if untold_starts(v)}
         self._others = OtherValues(self.model)
         self._make_memory(read_elements(self.model))
         self._connect_memory()
 
+    def _waits(self, values: Mapping[str, Value]) -> bool:
+        """True for an element that is set at initialisation: until then nobody knows the others."""
+        array = self.variables[next(iter(values))].array
+        if self._initialised or array not in self._untold:
+            return False
+        if len(values) == 1:
+            self._waiting |= values
+            return True
+        self._untold.remove(array)
+        for name in values:
+            self._waiting.pop(name, None)
+        return False
+
     @keeping_modes
     def _put(self, values: Mapping[str, Value]) -> None:
+        if self._waits(values):
+            return
         if not self._memory["events"][0]:
             super()._put(values)
             return
@@ -261,6 +279,9 @@ class Fmu3Part(FmuPart):
         arrays = np.flatnonzero(self._elements["size"] > 1)
         if arrays.size:  # a size that was set makes other start values
             self._read(arrays.tolist())
+        self._others.take_starts(self.slave)
+        if self._waiting:
+            self._put(self._waiting)
 
     @keeping_modes
     def exit_initialization(self) -> None:
