@@ -3,7 +3,8 @@
 
    Input k of a type is value reference 10 k, its output 10 k + 1: k = 1 Int8, 2 UInt8, 3 Int16,
    4 UInt16, 5 Int32, 6 UInt32, 7 Int64, 8 UInt64, 9 Boolean, 10 String, 11 Binary, 12 Enumeration
-   (Int64), 13 Float32. An output shows what the input was in the last step, or before the first.
+   (Int64), 13 Float32. An output shows what the input was in the last step, or before the first;
+   that of Float32 is NaN for 13 after 0.45 s.
 
    Structural parameter 200: n, at most 4; setting it sets u[3] = 3, u[4] = 4. Float64: input u[n] (201), output y[n] (202), dy/dt = u;
    parameter m[2,2] (203), output of it transposed (204). Int32: input pair[2] (205), output of it
@@ -151,6 +152,10 @@ EXPORT Status fmi3DoStep(void *c, double t, double h, bool no_rollback, bool *ev
     }
     for (uint64_t k = 0; k < v->n; ++k) v->y[k] += v->u[k] * (to - t);
     memcpy(v->out, v->in, sizeof(v->in));
+    float single;
+    memcpy(&single, v->in[FLOAT32].data, sizeof(single));
+    if (single == 13.0f && to > 0.45) single = NAN;
+    memcpy(v->out[FLOAT32].data, &single, sizeof(single));
     if (!part->events_used)
         while (v->every > 0.0 && (v->events + 1) * v->every < to + 1e-9) v->events++;
     now = to;

@@ -61,10 +61,21 @@ def broken_output(network: Network) -> str | None:
     return bad[first[0]] if first else None
 
 
-def first_nan(times: np.ndarray, values: np.ndarray) -> dict[int, float]:
-    """When columns (n, m) are no number for the first time [s], by the number of the column."""
-    nan = np.isnan(values)
-    return {int(k): float(times[nan[:, k].argmax()]) for k in np.flatnonzero(nan.any(axis=0))}
+def first_nan(times: np.ndarray, *values: np.ndarray) -> dict[int, float]:
+    """When columns are no number for the first time [s], by the number of the column.
+
+    Args:
+        times: of rows (n,) [s].
+        values: columns (up to n, m) of one kind after the other.
+    """
+    found: dict[int, float] = {}
+    first = 0
+    for columns in values:
+        nan = np.isnan(columns)
+        bad = np.flatnonzero(nan.any(axis=0))
+        found |= {first + int(k): float(times[nan[:, k].argmax()]) for k in bad}
+        first += columns.shape[1]
+    return found
 
 
 def growth(read: Callable[[], Iterable[np.ndarray]]) -> float | None:

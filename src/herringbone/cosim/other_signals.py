@@ -4,6 +4,7 @@ They hold over a macro step, whatever the algorithm. The compiled loop stops whe
 and is not slowed down where there are none.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -92,16 +93,27 @@ class OtherSignals:
         Raises:
             FmuError: a part refuses.
         """
-        found: dict[int, dict[str, Value]] = {}
-        for p, rows in self._by_source.items():
-            values = self._values(p, [c.output for c in rows])
-            for c, value in zip(rows, values, strict=True):
-                found.setdefault(c.target, {})[c.input] = self._rounded(c, c.converted(value))
+        found = self.collect()
         changed, self._given = found != self._given, found
         for p, given in found.items():
             self.asked = self._parts[p].name
             self._parts[p].put_values(given)
         return changed
+
+    def collect(self) -> dict[int, dict[str, Value]]:
+        """Values for the inputs that outputs feed, by number of the part.
+
+        Raises:
+            FmuError: a part refuses, or one is not finite.
+        """
+        found: dict[int, dict[str, Value]] = {}
+        for p, rows in self._by_source.items():
+            values = self._values(p, [c.output for c in rows])
+            for c, value in zip(rows, values, strict=True):
+                if isinstance(value, float) and not math.isfinite(value):
+                    raise FmuError(f"{self._parts[p].name}.{c.output} is not finite ({value:g})")
+                found.setdefault(c.target, {})[c.input] = self._rounded(c, c.converted(value))
+        return found
 
     def _rounded(self, c: Connection, value: Value) -> Value:
         """A value as the input takes it; raises FmuError where single precision has no such one."""
@@ -149,6 +161,11 @@ class OtherSignals:
             [value.hex() if isinstance(value, bytes) else value for value in row]
             for row in self._rows[first - self._dropped : last - self._dropped]
         ]
+
+    def numbers(self, rows: Sequence[Sequence[Value]]) -> np.ndarray:
+        """Float32 values of rows (n, m), 0 in columns of other types."""
+        found = [[v if isinstance(v, float) else 0.0 for v in row] for row in rows]
+        return np.array(found, dtype=float).reshape(len(rows), -1 if rows else 0)
 
     @property
     def types(self) -> dict[str, np.dtype]:

@@ -137,8 +137,9 @@ class Run:
         """Record signals of other types, and bring them to their inputs; a status of the loop."""
         try:
             self.others.sample(self.record.complete(done))
-            if self.others.connected and done < self.grid.count:
-                self.others.exchange()
+            if self.others.connected:
+                take = self.others.exchange if done < self.grid.count else self.others.collect
+                take()
         except FmuError as error:
             self.refusal = str(error)
             return REFUSED

@@ -81,11 +81,13 @@ class RunRows:
             found = self.stream.nan
         else:
             times = self.record.times(done)
-            found = first_nan(times, self.record.values[: times.size])
+            count = min(times.size, self._others.rows) if self._others.recorded else times.size
+            others = self._others.numbers(self._others.between(0, count))
+            found = first_nan(times, self.record.values[: times.size], others)
         if not found:
             return None
         first = min(found, key=found.__getitem__)
-        return self.names[first], found[first]
+        return (*self.names, *self._others.names)[first], found[first]
 
     def flush_in_time(self, done: int) -> None:
         """Let complete rows go, now and then; raises HerringboneError."""

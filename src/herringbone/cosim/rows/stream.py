@@ -51,7 +51,8 @@ class Stream:
     Attributes:
         rows: of the run that were handed on.
         last: time of the last one [s].
-        nan: when columns were no number for the first time [s], by their number.
+        nan: when columns were no number for the first time [s], by their number; those of other
+            types come after the others.
     """
 
     def __init__(
@@ -103,7 +104,7 @@ class Stream:
     def _append(self, times: np.ndarray, values: np.ndarray, others: Sequence) -> None:
         self.sink.append(times, in_own_units(self._recorded, values), others)
         self.last = float(times[-1])
-        self.nan = first_nan(times, values) | self.nan
+        self.nan = first_nan(times, values, self._others.numbers(others)) | self.nan
 
     def append(self, time: float, values: np.ndarray) -> None:
         """Hand on a row (columns,) between the records, of which others has a row already."""

@@ -218,6 +218,27 @@ def test_value_that_is_refused_ends_the_run_with_its_results(all_types, name):
     assert result.data["a.y[2]"].tolist() == pytest.approx([0.0, 0.2], rel=1e-12)
 
 
+@pytest.mark.parametrize("t_end", [0.5, 1.0])
+@pytest.mark.parametrize("input_", ["Float32_in", "d"])
+def test_nan_in_single_precision_ends_the_run(all_types, input_, t_end):
+    """As in doubles; in the last step, too."""
+    system = two(all_types["plain"], ("a.Float32_out", f"b.{input_}"))
+    result = run(system, {"a.Float32_in": 13}, t_end=t_end, step=0.1)
+    assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.PART_FAILED, "a")
+    assert result.outcome.message == "a.Float32_out is not finite (nan), at 0.5 s"
+
+
+def test_nan_in_single_precision_that_no_part_takes_is_told(all_types, tmp_path, capsys):
+    """Of rows in memory, and of those that leave it."""
+    said = "p.Float32_out is NaN from 0.5 s on; no part takes it, and all else is complete"
+    result = run(alone(all_types["plain"]), {"Float32_in": 13})
+    assert (result.outcome.kind, result.outcome.message) == (OutcomeKind.WITH_NAN, said)
+    (tmp_path / "system.toml").write_text(f'[parts.p]\nfmu = "{all_types["plain"]}"\n')
+    options = ["--set", "p.Float32_in=13", "--t-end", "1", "--record-step", "0.1"]
+    assert main(["run", str(tmp_path), *options, "-o", str(tmp_path / "out")]) == 1
+    assert f"completed_with_nan: {said}" in capsys.readouterr().err
+
+
 def test_adaptive_step_exchanges_at_its_own_points(all_types):
     system = two(all_types["plain"], ("a.y", "b.u"), ("b.y", "a.u"), ("a.events", "b.Int32_in"))
     options = {"algorithm": "li", "tolerance": 1e-3, "step": 0.01, "record_step": 1e-4}
