@@ -1,8 +1,10 @@
 """What several commands share: how they are declared, their options, and what these stand for."""
 
 import argparse
+import contextlib
 import math
 from collections.abc import Callable, Sequence
+from decimal import Decimal
 from pathlib import Path
 from typing import Any, TypedDict
 
@@ -12,6 +14,8 @@ from herringbone.core.declaring.units import R_MIN
 _SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
 _WHOLE = 2.0**53
 """Up to here doubles hold all whole numbers."""
+_MOST = 2**64
+"""No integer of FMI is as large."""
 _USUAL_SPREAD = 1.0
 """By what share assumed parameters may err: known within a factor of 2."""
 
@@ -208,12 +212,13 @@ def start_values(items: Sequence[str], form: str = _SET) -> dict[str, float | st
 def _number(text: str) -> float:
     """A number of a text, without loss; raises ValueError."""
     value = float(text)
-    if abs(value) < _WHOLE or math.isinf(value):
+    if abs(value) < _WHOLE or not math.isfinite(value):
         return value
-    try:
+    with contextlib.suppress(ValueError):
         return int(text)
-    except ValueError:
-        return value
+    exact = Decimal(text)
+    lossy = abs(exact) < _MOST and exact != Decimal(value) and exact == exact.to_integral_value()
+    return int(exact) if lossy else value
 
 
 class OperatingPoint(TypedDict):

@@ -1,6 +1,7 @@
 """Values of all FMI types, from what people and files give."""
 
 import math
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,6 +17,8 @@ INTEGERS = {
 }  # fmt: skip
 """Integer types of FMI 2.0 and 3.0."""
 REALS = {"Real", "Float64", "Float32"}
+_WHOLE = re.compile(r"[+-]?[0-9]{1,19}")
+"""Number of an enumeration's item."""
 _WORDS = {"true": True, "false": False, "1": True, "0": False}
 
 
@@ -104,14 +107,15 @@ def _item(given: Value, what: str, items: Sequence[tuple[str, int]]) -> int:
 def _bytes(given: Value, what: str) -> bytes:
     if isinstance(given, bytes):
         return given
+    if not isinstance(given, str):
+        raise ParameterError(
+            f"{what}: it takes a Binary, as hexadecimal digits; in quotes, "
+            "--set 'PART.VARIABLE=\"0102\"', where these could be a number"
+        )
     try:
-        return bytes.fromhex(given) if isinstance(given, str) else _no_bytes()
+        return bytes.fromhex(given)
     except ValueError:
         raise ParameterError(f"{what}: it takes a Binary, as hexadecimal digits") from None
-
-
-def _no_bytes() -> bytes:
-    raise ValueError
 
 
 def as_values(
@@ -133,6 +137,8 @@ def _listed(kind: str, given: ValueOrArray, what: str) -> list[Value]:
         given = given.split()
         if kind in REALS or kind in INTEGERS:
             return [number(text, what) for text in given]
+        if kind == "Enumeration":
+            return [int(text) if _WHOLE.fullmatch(text) else text for text in given]
     if isinstance(given, str | bytes | float | int):
         return [given]
     rows = [_listed(kind, row, what) if isinstance(row, list | tuple) else [row] for row in given]

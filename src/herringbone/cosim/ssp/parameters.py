@@ -21,12 +21,20 @@ def _boolean(text: str) -> int:
     return _BOOLEANS[word]
 
 
+def _item(text: str) -> int | str:
+    """Number of an item, or its name."""
+    try:
+        return whole(text)
+    except ValueError:
+        return text
+
+
 _TYPES: Mapping[str, Callable[[str], float | str]] = {
     "Real": number,
     "Integer": whole,
     "Boolean": _boolean,
     "String": str,
-    "Enumeration": lambda text: int(text) if text.isdecimal() else text,
+    "Enumeration": _item,
     "Binary": str,
     "Float64": number,
     "Float32": number,

@@ -27,6 +27,11 @@ def test_other_words_are_none(text):
         _TYPES["Boolean"](text)
 
 
+@pytest.mark.parametrize(("text", "value"), [("-3", -3), ("2", 2), ("on it", "on it"), ("²", "²")])
+def test_an_item_is_told_by_its_number_or_name(text, value):
+    assert _TYPES["Enumeration"](text) == value
+
+
 def test_runs_begin_at_0(tmp_path):
     file = tmp_path / "SystemStructure.ssd"
     file.write_text(STRUCTURE.format(start="0"))
