@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import herringbone as hb
+from herringbone.analysis.anatomy import value_at
+from herringbone.analysis.modes.skeleton import skeleton
 from herringbone.commands.main import main
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.plotting.modes.campbell import campbell
@@ -116,6 +118,17 @@ def test_shapes_and_animation(rig, tmp_path):
         mode_shapes(rig, (99,))
     animate_mode(rig, 9, tmp_path / "m.gif")
     assert (tmp_path / "m.gif").read_bytes().startswith(b"GIF8")
+
+
+@pytest.mark.parametrize(("system", "flank"), [("test_rig", 1.0), ("turbine", -1.0)])
+def test_gears_move_along_the_line_of_action_of_the_flank_that_carries(system, flank):
+    """n = (flank sin a, cos a), as the bearings have it; the turbine's teeth carry in coast."""
+    found = hb.modes(system)
+    gears = skeleton(found).gears
+    y = found.motion("gearbox.gear_mesh.pinion_left.s_y")
+    angle = value_at(found.system, "gearbox.bearing_supports.pressure_angle")
+    n = np.array([flank * math.sin(angle), math.cos(angle)])
+    np.testing.assert_allclose(gears[0, :2], n[:, None] * y, rtol=1e-12)
 
 
 def test_command(tmp_path, capsys):

@@ -1,8 +1,8 @@
 """Where gears and bearing seats stand, and how they move in a mode: what is drawn of it.
 
 Schematic: pinion and wheel stand a unit apart along x, their halves a unit along z. Motions are in
-the housing's frame; a gear's y, the line of action, lies at (sin a, cos a) in it, with a the
-working pressure angle that the bearings tell.
+the housing's frame; a gear's y, the line of action, lies at (flank sin a, cos a) in it, with a the
+working pressure angle that the bearings tell, and flank 1 (drive) or -1 (coast), as carries.
 """
 
 import math
@@ -78,7 +78,7 @@ def _gears(found: NaturalModes, known: Anatomy) -> tuple[np.ndarray | None, np.n
     own = _motions(found, pairs[0], _ports(known, pairs[0], PortKind.JOURNAL), "yz")
     if own is None:
         return None, None
-    angle = _pressure_angle(found, known)
+    angle = _flank(found, known, pairs[0]) * _pressure_angle(found, known)
     y, z = own[:, 0], own[:, 1]
     moved = np.stack([math.sin(angle) * y, math.cos(angle) * y, z], axis=1)
     flanges = _ports(known, pairs[0], PortKind.FLANGE)
@@ -91,6 +91,12 @@ def _gears(found: NaturalModes, known: Anatomy) -> tuple[np.ndarray | None, np.n
             sense = 1.0 if gear == GEARS[0] else -1.0  # the wheel's angle counts the other way
             turns[i] = sense * value_at(found.system, column) * phi
     return moved, turns
+
+
+def _flank(found: NaturalModes, known: Anatomy, pair: str) -> float:
+    """-1 where the coast flank carries, else 1, as at the bearings."""
+    column = known.column(pair, Quantity.CARRYING_FLANK)
+    return -1.0 if column is not None and value_at(found.system, column) < 0.0 else 1.0
 
 
 def _pressure_angle(found: NaturalModes, known: Anatomy) -> float:
