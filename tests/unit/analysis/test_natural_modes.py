@@ -7,6 +7,7 @@ import pytest
 
 import herringbone as hb
 from herringbone.analysis.anatomy import value_at
+from herringbone.analysis.modes import mean_tangents
 from herringbone.analysis.modes.skeleton import skeleton
 from herringbone.commands.main import main
 from herringbone.core import HerringboneError, ParameterError
@@ -148,6 +149,54 @@ def test_a_run_out_changes_no_frequency():
         for deviation in (0.0, 10e-6)
     )
     np.testing.assert_allclose(turning, still, rtol=1e-7)
+
+
+def test_teeth_that_carry_nothing_count_as_closed(rig):
+    """Both halves, whatever run-out: not as rounding of their force has it.
+
+    Without load they are a fifth softer, and have few thousandths of the elastic energy of the
+    rig's second mode, so that its frequency differs by less than 1e-3.
+    """
+    still, turning = (
+        hb.modes("test_rig", scene="runup", values={"gear_mesh.symmetry_deviation": deviation})
+        for deviation in (0.0, 30e-6)
+    )
+    np.testing.assert_allclose(turning.frequency_hz, still.frequency_hz, rtol=1e-6)
+    assert turning.frequency_hz[1] == pytest.approx(rig.frequency_hz[1], rel=1e-3)
+    (note,) = turning.notes
+    assert note.startswith("the teeth of gearbox.gear_mesh carry nothing in this scene")
+    assert not rig.notes
+
+
+def test_a_light_load_opens_no_teeth():
+    """Its modes lie between those of closed teeth without load and those under load.
+
+    Closed teeth are at most a fifth softer than under load, a frequency at most a ninth lower.
+    """
+    none, light, full = (
+        hb.modes("on_ground", values={"pinion_torque.torque_factor": t,
+                                      "wheel_torque.torque_factor": -t})
+        for t in (0.0, 0.01, 1.0)
+    )  # fmt: skip
+    assert not light.notes
+    assert (none.frequency_hz[:5] < light.frequency_hz[:5]).all()
+    assert (light.frequency_hz[:5] < full.frequency_hz[:5]).all()
+    np.testing.assert_allclose(light.frequency_hz[:5], full.frequency_hz[:5], rtol=0.11)
+
+
+def test_a_half_without_load_beside_one_that_carries_is_open():
+    values = {"gear_mesh.pinion_restraint": 1e9, "gear_mesh.symmetry_deviation": 80e-6}
+    found = hb.modes("on_ground", values=values)
+    assert [bool(x.any()) for x in found.linear.mesh_in.T] == [True, False]
+    assert found.notes == (
+        "gear_mesh: a half without load beside one that carries counts as open",
+    )  # fmt: skip
+
+
+def test_teeth_that_do_not_come_back_to_their_force_are_told(monkeypatch):
+    monkeypatch.setattr(mean_tangents, "_MOST", 1)
+    (note,) = hb.modes("on_ground").notes
+    assert "gear_mesh: over a turn its teeth do not keep their force (off by up to" in note
 
 
 def test_places_for_modes_that_a_housing_has_not_are_no_eigenvalues(rig):

@@ -195,7 +195,8 @@ def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
     answers = np.column_stack([np.abs(each.sum(axis=1)), np.abs(each).sum(axis=1)])
     largest = np.abs(found.mesh_out @ right).max(axis=0, initial=0.0) / np.abs(rates.real)
     answer = answers * largest[:, None]
-    return NaturalModes(found, rates, right, participation, answer, others, tuple(notes))
+    told = (*notes, *found.notes)
+    return NaturalModes(found, rates, right, participation, answer, others, told)
 
 
 def _unused(a: np.ndarray) -> int:
