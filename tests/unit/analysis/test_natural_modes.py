@@ -142,6 +142,14 @@ def test_command(tmp_path, capsys):
     assert main(["modes", "test_rig", "--shapes", "3"]) == 2
 
 
+@pytest.mark.parametrize("end", ["nan", "inf", "0", "-5"])
+@pytest.mark.parametrize(("option", "unit"), [("--highest", "Hz"), ("--speed", "r/min")])
+def test_ends_of_the_diagram_are_positive_and_finite(capsys, option, unit, end):
+    assert main(["modes", "test_rig", option, end]) == 2
+    told = capsys.readouterr().err
+    assert f"{option} {end}: it must be positive and finite, in {unit}" in told
+
+
 def test_a_run_out_changes_no_frequency():
     """A floating pinion follows it, so that the meshes keep their load and their stiffness."""
     still, turning = (

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -61,8 +62,10 @@ def run(options: argparse.Namespace) -> int:
 
     if (options.shapes or options.animate) and options.output is None:
         raise ParameterError("--shapes and --animate draw; add -o FOLDER")
-    if options.highest <= 0.0 or options.speed <= 0.0:
-        raise ParameterError("--highest and --speed must be positive, in Hz and r/min")
+    for name, unit in (("highest", "Hz"), ("speed", "r/min")):
+        end = getattr(options, name)
+        if not (math.isfinite(end) and end > 0.0):
+            raise ParameterError(f"--{name} {end:g}: it must be positive and finite, in {unit}")
     if options.output:
         check_writable(options.output)
     found = modes(
