@@ -150,6 +150,31 @@ def test_ends_of_the_diagram_are_positive_and_finite(capsys, option, unit, end):
     assert f"{option} {end}: it must be positive and finite, in {unit}" in told
 
 
+def test_modes_without_damping_answer_without_bound(tmp_path):
+    """Those that the mesh excites; decay that is rounding orders nothing, and is told as 0.
+
+    Without damping the mesh mode answers most, at one damping ratio for all, as it does with it.
+    """
+    parts = [f"gear_mesh.{gear}.shaft_damping_{axis}"
+             for gear in ("pinion", "wheel") for axis in "yzt"]  # fmt: skip
+    parts += [f"bearing_supports.{gear}.{axis}_damping"
+              for gear in ("pinion", "wheel") for axis in ("radial", "axial")]  # fmt: skip
+    parts += [f"gear_mesh.{name}" for name in ("mesh_damping_ratio", "pinion_axial_drag",
+                                               "symmetry_deviation")]  # fmt: skip
+    found = hb.modes("on_ground", values=dict.fromkeys(parts, 0.0))
+    damped = hb.modes("on_ground")
+    assert found.damping_ratio.tolist() == [0.0] * 11
+    assert set(np.unique(found.mesh_answer)) == {0.0, math.inf}
+    assert found.largest(1, math.inf) == damped.largest(1, math.inf)
+    assert found.notes[0].startswith("5 of 11 modes answer to the mesh without bound")
+    assert np.isfinite(found.mesh_weight).all()
+    assert campbell(found).axes
+    free = {"one": 0.5, "other": 2.0, "stiffness": 6e4, "damping": 0.0}
+    alone = hb.modes(two_rotors(tmp_path, **free))
+    assert alone.mesh_answer.tolist() == [[0.0, 0.0]]
+    assert not alone.notes
+
+
 def test_a_run_out_changes_no_frequency():
     """A floating pinion follows it, so that the meshes keep their load and their stiffness."""
     still, turning = (

@@ -4,13 +4,8 @@
     participation of a part p in mode k:  Re sum over states i of p of conj(l_ki) r_ki
 
 The participations of all parts add up to 1, whatever units the states have; of an undamped
-mechanical system they are shares of the kinetic energy. The answer of a mode to the mesh is the
-largest deflection of a mesh at the mode's resonance over a transmission error that all meshes have,
-
-    max_m |mesh_out_m r_k| |l_k^H sum_m mesh_in_m| / |Re(lambda_k)|
-
-in phase, or in the worst phases to each other (the sum of magnitudes instead). Modes with a small
-answer are not heard, wherever a mesh order crosses them.
+mechanical system they are shares of the kinetic energy. The answer of a mode to the mesh is that of
+`mesh_answer`; modes with a small one are not heard, wherever a mesh order crosses them.
 
 Source: I. J. Perez-Arriaga, G. C. Verghese, F. C. Schweppe, Selective modal analysis with
 applications to electric power systems, IEEE Trans. PAS 101 (1982), for participation.
@@ -28,6 +23,7 @@ from scipy.sparse.csgraph import connected_components
 
 from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.analysis.modes.linearised import Linearised, linearised, seen_row
+from herringbone.analysis.modes.mesh_answer import mesh_answer, undamped
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.core.facts import Facts
@@ -47,7 +43,9 @@ class NaturalModes(Facts):
         rates: (n,) eigenvalues, imaginary part positive [1/s].
         shapes: (states, n) right vectors.
         participation: one row per mode, one column per part that has states; rows add up to 1.
-        mesh_answer: (n, 2) see above: in phase, in the worst phases; 0 without gear pair.
+        mesh_answer: (n, 2) see there: in phase, in the worst phases; 0 without gear pair, inf
+            without damping.
+        mesh_weight: (n,) finite, what orders modes by their answer, see there.
         others: how many eigenvalues do not oscillate; without those of places that a part keeps
             for more data than it has, as a housing does for modes.
         notes: lines that the user should read.
@@ -58,6 +56,7 @@ class NaturalModes(Facts):
     shapes: np.ndarray
     participation: pd.DataFrame
     mesh_answer: np.ndarray
+    mesh_weight: np.ndarray
     others: int
     notes: tuple[str, ...] = ()
 
@@ -73,8 +72,8 @@ class NaturalModes(Facts):
 
     @property
     def damping_ratio(self) -> np.ndarray:
-        """(n,) [1]."""
-        return -self.rates.real / np.abs(self.rates)
+        """(n,) [1]; 0 where it is rounding."""
+        return np.where(undamped(self.rates), 0.0, -self.rates.real / np.abs(self.rates))
 
     @cached_property
     def table(self) -> pd.DataFrame:
@@ -109,7 +108,7 @@ class NaturalModes(Facts):
         Without a gear pair the first ones.
         """
         below = np.flatnonzero(self.frequency_hz <= highest)
-        order = np.argsort(-self.mesh_answer[below, 0], kind="stable")[:count]
+        order = np.argsort(-self.mesh_weight[below], kind="stable")[:count]
         return sorted(int(k) for k in below[order])
 
     def crossings(self, orders: Sequence[int], highest_speed: float) -> pd.DataFrame:
@@ -121,7 +120,7 @@ class NaturalModes(Facts):
 
         Returns:
             "speed" [r/min], "order", "mode" from 1, "frequency" [Hz], "mesh_answer"; the largest
-            answers first. Empty without a gear pair.
+            answers first, see `mesh_weight`. Empty without a gear pair.
         """
         names = ["speed", "order", "mode", "frequency", "mesh_answer"]
         teeth = self.teeth
@@ -135,7 +134,8 @@ class NaturalModes(Facts):
         ]
         found = pd.DataFrame(rows, columns=names, dtype=float)
         found[["order", "mode"]] = found[["order", "mode"]].astype(int)
-        return found.sort_values("mesh_answer", ascending=False, ignore_index=True)
+        first = np.argsort(-self.mesh_weight[found["mode"] - 1], kind="stable")
+        return found.iloc[first].reset_index(drop=True)
 
     @property
     def teeth(self) -> float | None:
@@ -191,12 +191,11 @@ def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
         for p, instance in enumerate(twin.instances)
         if firsts[p + 1] > firsts[p]
     })  # fmt: skip
-    each = left.conj().T @ found.mesh_in
-    answers = np.column_stack([np.abs(each.sum(axis=1)), np.abs(each).sum(axis=1)])
-    largest = np.abs(found.mesh_out @ right).max(axis=0, initial=0.0) / np.abs(rates.real)
-    answer = answers * largest[:, None]
-    told = (*notes, *found.notes)
-    return NaturalModes(found, rates, right, participation, answer, others, told)
+    heard = mesh_answer(found, rates, left, right)
+    told = (*notes, *found.notes, *heard.notes)
+    return NaturalModes(
+        found, rates, right, participation, heard.answer, heard.weight, others, told
+    )
 
 
 def _unused(a: np.ndarray) -> int:

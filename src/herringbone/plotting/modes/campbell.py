@@ -53,7 +53,7 @@ def campbell(
     axes.set_ylabel("frequency [Hz]")
     parts = list(found.participation.columns)
     used: dict[str, str] = {}
-    answer = found.mesh_answer[:, 0]
+    answer = found.mesh_weight
     strongest = max(float(answer[shown].max(initial=0.0)), 1e-300)
     for k in shown:
         part = str(found.participation.iloc[k].idxmax())
@@ -63,8 +63,9 @@ def campbell(
     _rays(found, axes, orders)
     crossings = found.crossings(orders, speed)
     crossings = crossings[crossings["frequency"] <= highest]
-    heard = crossings[crossings["mesh_answer"] >= _LEAST * strongest]
-    sizes = 260.0 * heard["mesh_answer"] / strongest
+    weight = answer[crossings["mode"] - 1]
+    heard = crossings[weight >= _LEAST * strongest]
+    sizes = 260.0 * answer[heard["mode"] - 1] / strongest
     axes.scatter(heard["speed"], heard["frequency"], s=sizes, facecolor="none", edgecolor="black",
                  linewidth=1.0, zorder=3)  # fmt: skip
     _labels(found, axes, shown)
