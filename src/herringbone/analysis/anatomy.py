@@ -53,6 +53,12 @@ def value_at(system: System, path: str) -> float:
     return float(part.values.get(variable, declared.start))
 
 
+def orders_told(system: System) -> str:
+    """Of which gear pair mesh frequency and orders are; "" of a system with one."""
+    pairs = anatomy(system).with_role(Role.GEAR_PAIR)
+    return f"mesh frequency and orders of {pairs[0]}" if len(pairs) > 1 else ""
+
+
 def _declared(part: PartSpec) -> PartInfo:
     component = COMPONENTS.get(part.component or part.stands_for or "")
     if component is None:

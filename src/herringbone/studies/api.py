@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
-from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.anatomy import anatomy, orders_told
 from herringbone.analysis.set_points import SPEED, TORQUE, addressed
 from herringbone.components.registry import component
 from herringbone.core import ParameterError
@@ -174,11 +174,10 @@ def _of_runs(what: str) -> ParameterError:
 
 
 def _told_pairs(system: System) -> str:
-    """Of which gear pair mesh orders are; "" of a system with one."""
+    """Of which gear pair mesh orders are, and of which groups; "" of a system with one."""
+    orders = orders_told(system)
     pairs = anatomy(system).with_role(Role.GEAR_PAIR)
-    if len(pairs) < 2:
-        return ""
-    return f"mesh frequency and orders of {pairs[0]}, groups of channels over {' and '.join(pairs)}"
+    return f"{orders}, groups of channels over {' and '.join(pairs)}" if orders else ""
 
 
 def _found(system: str | Path | System) -> str | System:

@@ -111,6 +111,13 @@ def test_campbell_says_what_it_leaves_out(rig):
     assert f"{above} modes above 2000 Hz not shown" in figure.get_suptitle()
 
 
+def test_of_several_pairs_orders_of_the_first_are_told():
+    found = hb.modes("back_to_back")
+    said = "mesh frequency and orders of first.gear_mesh"
+    assert f"{said}, over the speed of its pinion; other pairs have their own" in found.notes
+    assert f"back_to_back, {said}" in campbell(found).get_suptitle()
+
+
 def test_shapes_and_animation(rig, tmp_path):
     titles = [a.get_title(loc="left") for a in mode_shapes(rig, (9, 16)).axes]
     assert titles[0].startswith(f"9: {rig.frequency_hz[8]:.1f} Hz, damping ")

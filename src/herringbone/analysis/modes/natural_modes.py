@@ -21,7 +21,7 @@ import pandas as pd
 from scipy.linalg import eig, matrix_balance
 from scipy.sparse.csgraph import connected_components
 
-from herringbone.analysis.anatomy import anatomy, value_at
+from herringbone.analysis.anatomy import anatomy, orders_told, value_at
 from herringbone.analysis.modes.linearised import Linearised, linearised, seen_row
 from herringbone.analysis.modes.mesh_answer import mesh_answer, undamped
 from herringbone.core import ParameterError
@@ -112,7 +112,7 @@ class NaturalModes(Facts):
         return sorted(int(k) for k in below[order])
 
     def crossings(self, orders: Sequence[int], highest_speed: float) -> pd.DataFrame:
-        """Pinion speeds at which mesh orders meet natural frequencies.
+        """Pinion speeds at which mesh orders, of the first gear pair, meet natural frequencies.
 
         Args:
             orders: of the mesh.
@@ -192,9 +192,13 @@ def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
         if firsts[p + 1] > firsts[p]
     })  # fmt: skip
     heard = mesh_answer(found, rates, left, right)
-    told = (*notes, *found.notes, *heard.notes)
+    orders = orders_told(system)
+    first = (
+        (f"{orders}, over the speed of its pinion; other pairs have their own",) if orders else ()
+    )
+    told = (*notes, *found.notes, *heard.notes, *first)
     return NaturalModes(
-        found, rates, right, participation, heard.answer, heard.weight, others, told
+        found, rates, right, participation, heard.answer, heard.weight, others, tuple(told)
     )
 
 

@@ -5,6 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from herringbone.analysis.anatomy import orders_told
 from herringbone.analysis.modes.natural_modes import NaturalModes
 from herringbone.core.frequencies import HIGHEST
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, new_figure, styled
@@ -31,7 +32,7 @@ def campbell(
 
     Lines are coloured by the part that takes most part, and the wider, the more the mode answers to
     a transmission error of all meshes; circles mark where mesh orders cross modes, their area goes
-    with the answer, too. Without a gear pair there are neither.
+    with the answer, too. Without a gear pair there are neither; of several they are the first's.
 
     Args:
         found: modes.
@@ -42,7 +43,9 @@ def campbell(
     shown = np.flatnonzero(found.frequency_hz <= highest)
     above = found.rates.size - shown.size
     beyond = f", {above} modes above {highest:g} Hz not shown" if above else ""
-    title = f"Campbell diagram: {found.system.name}{beyond}"
+    orders_of = orders_told(found.system)
+    rays = f", {orders_of}" if orders_of else ""
+    title = f"Campbell diagram: {found.system.name}{rays}{beyond}"
     figure = new_figure(title, 1, width=13.0)
     figure.set_figheight(8.0)
     figure.subplots_adjust(left=0.07, right=0.88, top=0.86, bottom=0.08)
