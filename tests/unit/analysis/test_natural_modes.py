@@ -149,6 +149,14 @@ def test_command(tmp_path, capsys):
     assert main(["modes", "test_rig", "--shapes", "3"]) == 2
 
 
+@pytest.mark.parametrize(("option", "wrong"), [("--animate", "0"), ("--shapes", "999")])
+def test_a_wrong_mode_is_told_before_files_are_written(tmp_path, capsys, option, wrong):
+    assert main(["modes", "on_ground", option, "1", wrong, "-o", str(tmp_path)]) != 0
+    told = capsys.readouterr().err
+    assert f"there is no mode {wrong}: system 'on_ground' has 1 to 11" in told
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("end", ["nan", "inf", "0", "-5"])
 @pytest.mark.parametrize(("option", "unit"), [("--highest", "Hz"), ("--speed", "r/min")])
 def test_ends_of_the_diagram_are_positive_and_finite(capsys, option, unit, end):

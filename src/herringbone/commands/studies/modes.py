@@ -88,8 +88,13 @@ def run(options: argparse.Namespace) -> int:
 
 def _write(found: "NaturalModes", options: argparse.Namespace) -> list[Path]:
     from herringbone.plotting.modes.campbell import campbell  # noqa: PLC0415 (matplotlib: lazy)
-    from herringbone.plotting.modes.mode_shapes import animate_mode, mode_shapes  # noqa: PLC0415
+    from herringbone.plotting.modes.mode_shapes import (  # noqa: PLC0415
+        animate_mode,
+        check_numbers,
+        mode_shapes,
+    )
 
+    check_numbers(found, [*options.shapes, *options.animate])  # before files are written anew
     folder: Path = options.output
     table, diagram, shapes = (folder / name for name in FILES)
     gifs = {mode: folder / f"mode_{mode}.gif" for mode in options.animate}

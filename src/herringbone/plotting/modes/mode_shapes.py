@@ -104,11 +104,16 @@ def _canvas(found: NaturalModes) -> Figure:
     return figure
 
 
-def _chosen(found: NaturalModes, numbers: Sequence[int], count: int) -> list[int]:
+def check_numbers(found: NaturalModes, numbers: Sequence[int]) -> None:
+    """Raise HerringboneError if there is no mode of one of some numbers, from 1."""
     if wrong := [n for n in numbers if not 1 <= n <= found.rates.size]:
         raise HerringboneError(
             f"there is no mode {wrong[0]}: system '{found.system.name}' has 1 to {found.rates.size}"
         )
+
+
+def _chosen(found: NaturalModes, numbers: Sequence[int], count: int) -> list[int]:
+    check_numbers(found, numbers)
     return [n - 1 for n in numbers] or found.largest(count, math.inf)
 
 
