@@ -11,7 +11,7 @@ from dataclasses import replace
 from herringbone.components.registry import COMPONENTS
 from herringbone.core.anatomy import Anatomy, Joint, PartInfo, part_info
 from herringbone.core.caching.remembered import Remembered
-from herringbone.core.declaring.roles import Port, PortKind, Role
+from herringbone.core.declaring.roles import Port, PortKind, Quantity, Role
 from herringbone.cosim.structure.system import PartSpec, System
 
 _known: Remembered[Anatomy] = Remembered(64)
@@ -51,6 +51,12 @@ def value_at(system: System, path: str) -> float:
     part = system.part(name)
     declared = COMPONENTS[str(part.component)].declaration.variable(variable)
     return float(part.values.get(variable, declared.start))
+
+
+def carrying_flank(system: System, pair: str) -> float:
+    """The flank for which a gear pair is prepared: 1 drive, as where none is told, -1 coast."""
+    column = anatomy(system).column(pair, Quantity.CARRYING_FLANK)
+    return -1.0 if column is not None and value_at(system, column) < 0.0 else 1.0
 
 
 def orders_told(system: System) -> str:

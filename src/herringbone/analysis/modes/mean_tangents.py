@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.anatomy import anatomy, carrying_flank
 from herringbone.analysis.steady.of_system import SystemLaws
 from herringbone.analysis.twin.fused.core import Core
-from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.declaring.roles import Role
 
 _PLACES = 2048
 """Angles of a turn of the reference shaft at which the laws are evaluated."""
@@ -57,12 +57,11 @@ def meshes_of(core: Core) -> Meshes:
                 found.setdefault(int(owner[tangent]), (tangent, name))
     tangents = np.array([tangent for tangent, _ in found.values()], dtype=int)
     pairs = np.array([name for _, name in found.values()], dtype=object)
-    columns = [known.column(name, Quantity.CARRYING_FLANK) for name in pairs]
-    coast = [c is not None and twin.block[twin.index(c)] < 0.0 for c in columns]
+    flanks = np.array([carrying_flank(twin.system, name) for name in pairs])
     forces, along = owner[tangents], condensed.directions[tangents]
     mean = (condensed.modes.tangent[forces] * along).sum(axis=1)
     stiffness = mean / (along * along).sum(axis=1)
-    return Meshes(tangents, forces, pairs, np.where(coast, -1.0, 1.0), stiffness)
+    return Meshes(tangents, forces, pairs, flanks, stiffness)
 
 
 def mean_tangents(core: Core, meshes: Meshes) -> tuple[np.ndarray, tuple[str, ...]]:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.anatomy import anatomy, value_at
+from herringbone.analysis.anatomy import anatomy, carrying_flank, value_at
 from herringbone.analysis.modes.natural_modes import NaturalModes
 from herringbone.core import ParameterError
 from herringbone.core.anatomy import Anatomy
@@ -78,7 +78,7 @@ def _gears(found: NaturalModes, known: Anatomy) -> tuple[np.ndarray | None, np.n
     own = _motions(found, pairs[0], _ports(known, pairs[0], PortKind.JOURNAL), "yz")
     if own is None:
         return None, None
-    angle = _flank(found, known, pairs[0]) * _pressure_angle(found, known)
+    angle = carrying_flank(found.system, pairs[0]) * _pressure_angle(found, known)
     y, z = own[:, 0], own[:, 1]
     moved = np.stack([math.sin(angle) * y, math.cos(angle) * y, z], axis=1)
     flanges = _ports(known, pairs[0], PortKind.FLANGE)
@@ -91,12 +91,6 @@ def _gears(found: NaturalModes, known: Anatomy) -> tuple[np.ndarray | None, np.n
             sense = 1.0 if gear == GEARS[0] else -1.0  # the wheel's angle counts the other way
             turns[i] = sense * value_at(found.system, column) * phi
     return moved, turns
-
-
-def _flank(found: NaturalModes, known: Anatomy, pair: str) -> float:
-    """-1 where the coast flank carries, else 1, as at the bearings."""
-    column = known.column(pair, Quantity.CARRYING_FLANK)
-    return -1.0 if column is not None and value_at(found.system, column) < 0.0 else 1.0
 
 
 def _pressure_angle(found: NaturalModes, known: Anatomy) -> float:
