@@ -1,5 +1,6 @@
 """What a co-simulation master needs to know of a participant, be it an FMU or in-process."""
 
+import math
 from collections.abc import Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from herringbone.core.declaring.declaration import (
     node_name,
     signal_of,
 )
+from herringbone.core.errors import HerringboneError
 
 Value = float | str | bytes
 """Value of a variable of any FMI type; also an int or a bool."""
@@ -188,6 +190,23 @@ def is_signal_node(variables: Container[str], name: str) -> bool:
         name: of one of them.
     """
     return is_node(name) and signal_of(name) in variables
+
+
+def to_si(v: PartVariable, where: str, kind: type[HerringboneError]) -> tuple[float, float]:
+    """Factor and offset of a variable's values to SI units; what has no unit is in them.
+
+    Args:
+        v: the variable.
+        where: it is, for the message.
+        kind: of error that is raised if the definition of its unit is no conversion.
+    """
+    factor, offset = v.dimension[:2] if v.dimension else (1.0, 0.0)
+    if factor == 0.0 or not (math.isfinite(factor) and math.isfinite(offset)):
+        raise kind(
+            f"{where}: unit '{v.unit}' has the factor {factor:g} and the offset {offset:g} to SI "
+            "units; no value can be converted"
+        )
+    return factor, offset
 
 
 def reals(part: Part, causality: str) -> list[str]:

@@ -1,9 +1,7 @@
 """Units of connected variables."""
 
-import math
-
 from herringbone.core import StructureError
-from herringbone.core.part import PartVariable
+from herringbone.core.part import PartVariable, to_si
 
 
 def unit_conversion(source: PartVariable, target: PartVariable, where: str) -> tuple[float, float]:
@@ -42,16 +40,6 @@ def conversion_by_definitions(
     Raises:
         StructureError: a definition is no conversion.
     """
-    factor, offset = _to_si(source, where)
-    own, start = _to_si(target, where)
+    factor, offset = to_si(source, f"connection {where}", StructureError)
+    own, start = to_si(target, f"connection {where}", StructureError)
     return factor / own, (offset - start) / own
-
-
-def _to_si(variable: PartVariable, where: str) -> tuple[float, float]:
-    factor, offset = variable.dimension[:2] if variable.dimension else (1.0, 0.0)
-    if factor == 0.0 or not (math.isfinite(factor) and math.isfinite(offset)):
-        raise StructureError(
-            f"connection {where}: unit '{variable.unit}' has the factor {factor:g} and the offset "
-            f"{offset:g} to SI units; no value can be converted"
-        )
-    return factor, offset

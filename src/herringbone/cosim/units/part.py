@@ -1,6 +1,5 @@
 """A part whose inputs and outputs have units of its own, as one that takes and gives SI units."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -8,7 +7,7 @@ import numpy as np
 
 from herringbone.core import FmuError
 from herringbone.core.declaring.units import si_name
-from herringbone.core.part import Addresses, Part, PartVariable, Value, ValueOrArray
+from herringbone.core.part import Addresses, Part, PartVariable, Value, ValueOrArray, to_si
 from herringbone.cosim.adapter import PartAdapter
 from herringbone.cosim.units import calls
 
@@ -47,13 +46,7 @@ class SiPart(PartAdapter):
 
     def _rule(self, v: PartVariable) -> tuple[float, float]:
         """Factor and offset to SI units."""
-        factor, offset = v.dimension[:2] if v.dimension else (1.0, 0.0)
-        if factor == 0.0 or not (math.isfinite(factor) and math.isfinite(offset)):
-            raise FmuError(
-                f"{self.name}: unit '{v.unit}' has the factor {factor:g} and the offset "
-                f"{offset:g} to SI units; no value can be converted"
-            )
-        return factor, offset
+        return to_si(v, self.name, FmuError)
 
     def _in_si(self, v: PartVariable, reference: int) -> PartVariable:
         if not _foreign(v) or v.dimension is None:
