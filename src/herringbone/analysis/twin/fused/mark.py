@@ -7,7 +7,7 @@ import numpy as np
 
 from herringbone.analysis.twin.condensed.march import BENDS
 
-_TIME = "time"
+_MARK, _TIME = "mark", "time"
 
 
 class Mark(NamedTuple):
@@ -30,7 +30,7 @@ class Mark(NamedTuple):
 def as_arrays(marks: Sequence[Mark]) -> dict[str, np.ndarray]:
     """Marks as arrays by name, as checkpoints have them; see `from_arrays`."""
     return {
-        f"mark{k}.{name}": array
+        f"{_MARK}{k}.{name}": array
         for k, mark in enumerate(marks)
         for name, array in {_TIME: np.array(mark.time), **mark.state}.items()
     }
@@ -38,12 +38,9 @@ def as_arrays(marks: Sequence[Mark]) -> dict[str, np.ndarray]:
 
 def from_arrays(arrays: Mapping[str, np.ndarray]) -> list[Mark]:
     """The marks among arrays by name."""
-    found: list[Mark] = []
-    while own := {
-        name.removeprefix(first): array
-        for first in (f"mark{len(found)}.",)
-        for name, array in arrays.items()
-        if name.startswith(first)
-    }:
-        found.append(Mark(float(own.pop(_TIME)), own))
-    return found
+    states: dict[int, dict[str, np.ndarray]] = {}
+    for name, array in arrays.items():
+        head, _, own = name.partition(".")
+        if head.startswith(_MARK):
+            states.setdefault(int(head.removeprefix(_MARK)), {})[own] = array
+    return [Mark(float(states[k].pop(_TIME)), states[k]) for k in sorted(states)]
