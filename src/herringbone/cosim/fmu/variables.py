@@ -119,13 +119,17 @@ def untold_starts(variable: ModelVariable) -> bool:
 
     Of texts and bytes fmpy reads the first one.
     """
-    size = math.prod(variable.shape or ())
-    if not variable.dimensions or size < 2:
+    if not variable.dimensions or (size := math.prod(variable.shape or ())) < 2:
         return False
     return variable.type in {"String", "Binary"} or len(str(variable.start or "0").split()) not in {
         1,
         size,
     }
+
+
+def untold_arrays(model: ModelDescription) -> set[str]:
+    """Names of the arrays that `untold_starts` holds of."""
+    return {v.name for v in model.modelVariables if untold_starts(v)}
 
 
 def changes(model: ModelDescription) -> bool:

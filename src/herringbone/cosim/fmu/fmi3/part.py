@@ -24,7 +24,7 @@ from herringbone.cosim.fmu.fmi3.updates import inputs_within
 from herringbone.cosim.fmu.functions import KnownFunctions
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.part import FmuPart
-from herringbone.cosim.fmu.variables import Element, read_elements, resized, untold_starts
+from herringbone.cosim.fmu.variables import Element, read_elements, resized, untold_arrays
 
 _WARNING = 1
 _CALLBACK = fmi3IntermediateUpdateCallback
@@ -73,7 +73,7 @@ class Fmu3Part(FmuPart):
 
     def _load(self, **options: str) -> FMU3Slave:
         self._initialised = self._told = False
-        self._untold = {v.name for v in self.model.modelVariables if untold_starts(v)}
+        self._untold = untold_arrays(self.model)
         self._waiting: dict[str, Value] = {}
         self._memory = np.zeros(1, memory.MEMORY)
         self._within = inputs_within(self.model, Path(options["unzipDirectory"]))
@@ -201,7 +201,7 @@ class Fmu3Part(FmuPart):
     def _resize(self, name: str, size: int) -> None:
         """Arrays whose size is a structural parameter have another one now."""
         self.variables = resized(self.model, name, size)
-        self._untold = {v.name for v in self.model.modelVariables if untold_starts(v)}
+        self._untold = untold_arrays(self.model)
         self._others = OtherValues(self.model)
         self._make_memory(read_elements(self.model))
         self._connect_memory()
