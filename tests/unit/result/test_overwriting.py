@@ -51,13 +51,36 @@ def test_what_may_be_overwritten(tmp_path, key, state, named, found):
     settled(folder, key, state)
     claim = Claim(folder, named, "k", {"scene": "k"})
     if found.startswith("r"):
-        assert claimed(claim) == tmp_path / found
+        assert place(claim) == tmp_path / found
     else:
         with pytest.raises(HerringboneError) as error:
             claimed(claim)
         assert found in str(error.value)
-        assert claimed(replace(claim, overwrite=True)) == folder
-    assert claimed(replace(claim, folder=tmp_path / "new")) == tmp_path / "new"
+        assert place(replace(claim, overwrite=True)) == folder
+    assert place(replace(claim, folder=tmp_path / "new")) == tmp_path / "new"
+
+
+def place(claim):
+    """The folder that a run gets, which it leaves again."""
+    lock = claimed(claim)
+    lock.release()
+    return lock.folder
+
+
+def test_a_folder_is_kept_from_the_claim_on(tmp_path):
+    """Between it and the first row minutes may pass, in which a second run begins and ends."""
+    claim = Claim(tmp_path / "results" / "r", False, "k", {"scene": "k"})
+    first = claimed(claim)
+    assert place(replace(claim, key="other")) == tmp_path / "results" / "r-2"
+    for named in (replace(claim, named=True), replace(claim, overwrite=True)):
+        with pytest.raises(HerringboneError, match="another run is writing into"):
+            claimed(named)
+    first.release()
+    assert not (tmp_path / "results").exists(), "folders of runs that were refused"
+    second = claimed(claim)
+    (second.folder / "results.npy").touch()
+    second.release()
+    assert second.folder.is_dir()
 
 
 def test_a_folder_that_is_written_is_not_told_as_cut_off(tmp_path):
@@ -181,8 +204,8 @@ def test_files_of_no_run_are_not_replaced_unasked(tmp_path):
     """Whatever else is in the folder stays, and stands in nobody's way."""
     (tmp_path / "notes.txt").touch()
     claim = Claim(tmp_path, True, "k", {})
-    assert claimed(claim) == tmp_path
+    assert place(claim) == tmp_path
     (tmp_path / "results.csv").touch()
     with pytest.raises(HerringboneError, match=r"holds results\.csv of no run, which"):
         claimed(claim)
-    assert claimed(replace(claim, overwrite=True)) == tmp_path
+    assert place(replace(claim, overwrite=True)) == tmp_path

@@ -1,6 +1,6 @@
 """A results folder whose run is resumed: what is there already is compared bit by bit."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -38,7 +38,6 @@ class CheckedStore(Store):
         start: all that is known of the result.
         there: rows in the folder.
         done: of these, the ones that the run does not compute again.
-        prepare: see `Store`.
     """
 
     def __init__(
@@ -48,15 +47,13 @@ class CheckedStore(Store):
         start: Result,
         there: int,
         done: int,
-        prepare: Callable[[], None] = lambda: None,
     ) -> None:
-        super().__init__(folder, run, start, prepare)
+        super().__init__(folder, run, start)
         self._there, self._position = there, done
 
     def begin(self, columns: TableColumns, rows: int = 0) -> None:
         """Open the files; raises ReplayError if the run has other columns than before."""
         check_room(self.folder, rows - self._there, len(columns.names))
-        self._prepare()
         known = self._described(columns)
         if (known.columns, known.units) != (self.run.columns, self.run.units):
             raise ReplayError(f"{self.folder} holds a run with other columns; nothing was changed")

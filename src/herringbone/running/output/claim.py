@@ -2,7 +2,7 @@
 
 import itertools
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -38,24 +38,42 @@ class Claim:
     overwrite: bool = False
 
 
-def claimed(claim: Claim) -> Path:
-    """The folder into which the run may write.
+def claimed(claim: Claim) -> "FolderLock":
+    """The folder into which the run may write, kept from others from here on.
 
     Raises:
-        HerringboneError: another run is there.
+        HerringboneError: another run is there, or writes there.
     """
-    if claim.overwrite or not (why := _taken(claim.folder, claim)):
-        return claim.folder
-    if claim.named or why.own:
-        raise HerringboneError(f"{claim.folder} {why.text}")
-    for number in itertools.count(2):
-        folder = claim.folder.with_name(f"{claim.folder.name}-{number}")
-        why = _taken(folder, claim)
-        if not why:
-            return folder
-        if why.own:
+    for folder in _candidates(claim.folder):
+        try:
+            lock = FolderLock(folder)
+        except FolderBusyError:
+            if claim.named or claim.overwrite or _holds(folder, claim.key):
+                raise
+            continue
+        why = None if claim.overwrite else _taken(folder, claim)
+        if why is None:
+            return lock
+        lock.release()
+        if claim.named or why.own:
             raise HerringboneError(f"{folder} {why.text}")
     raise AssertionError("there is always another number")
+
+
+def _candidates(folder: Path) -> Iterator[Path]:
+    """A folder, and others with numbers."""
+    yield folder
+    for number in itertools.count(2):
+        yield folder.with_name(f"{folder.name}-{number}")
+
+
+def _holds(folder: Path, key: str) -> bool:
+    """True if a run of these settings is there, as far as that can be read."""
+    try:
+        found = read_run_file(folder)
+    except ResourceError:
+        return False
+    return found is not None and found.key == key
 
 
 @dataclass(frozen=True)
@@ -67,11 +85,7 @@ class _Taken:
 
 
 def _taken(folder: Path, claim: Claim) -> _Taken | None:
-    """Why a folder is not to be overwritten; None if it may be.
-
-    Raises:
-        HerringboneError: another process writes into it.
-    """
+    """Why a folder that is locked is not to be overwritten; None if it may be."""
     anew = option("overwrite", True)
     try:
         found = read_run_file(folder)
@@ -91,10 +105,13 @@ def _taken(folder: Path, claim: Claim) -> _Taken | None:
             f"holds a run of other settings ({', '.join(names)}); choose another folder, or {anew}"
         )
     if found.state is State.RUNNING:
-        FolderLock(folder).release()  # one that still writes is not cut off
         resume = f"go on with 'herringbone run --resume {folder}', or " if found.asked else ""
         return _Taken(f"holds this run, but cut off; {resume}begin anew with {anew}", own=True)
     return None
+
+
+class FolderBusyError(HerringboneError):
+    """Another process writes into a folder."""
 
 
 class FolderLock:
@@ -103,13 +120,19 @@ class FolderLock:
     Args:
         folder: is made if it is not there.
 
+    Attributes:
+        folder: likewise.
+
     Raises:
-        HerringboneError: it cannot be made, or another process writes into it.
+        HerringboneError: it cannot be made.
+        FolderBusyError: another process writes into it.
     """
 
     def __init__(self, folder: Path) -> None:
-        self._descriptor = -1
+        self.folder, self._descriptor = folder, -1
+        self._made: list[Path] = []
         try:
+            self._made = [place for place in (folder, *folder.parents) if not place.exists()]
             folder.mkdir(parents=True, exist_ok=True)
             if fcntl is None:
                 return
@@ -121,15 +144,24 @@ class FolderLock:
         try:
             fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            self.release()
-            raise HerringboneError(
+            self._close()
+            raise FolderBusyError(
                 f"another run is writing into {folder}; wait for it, or choose another folder"
             ) from None
         except OSError:  # a file system without locks
             return
 
     def release(self) -> None:
-        """Let others write."""
+        """Let others write; folders that were made and are empty go."""
+        for place in self._made:
+            try:
+                place.rmdir()
+            except OSError:  # something is in it
+                break
+        self._made = []
+        self._close()
+
+    def _close(self) -> None:
         if self._descriptor >= 0:
             os.close(self._descriptor)
             self._descriptor = -1

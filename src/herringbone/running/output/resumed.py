@@ -1,6 +1,6 @@
 """A run that goes on: its folder, how it was asked for, and where it goes on."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.state_file import read_state
 from herringbone.result.folder.stored_table import stored_table
 from herringbone.result.result import Result
+from herringbone.running.output.claim import FolderLock
 from herringbone.running.reporting.report import finish_report, write_summary
 
 
@@ -47,15 +48,10 @@ class Resumed:
                 f"bring them back, or begin anew with {option('overwrite', True)}"
             )
 
-    def store(
-        self,
-        start: Result,
-        state: Mapping[str, np.ndarray] | None,
-        prepare: Callable[[], None],
-    ) -> CheckedStore:
+    def store(self, start: Result, state: Mapping[str, np.ndarray] | None) -> CheckedStore:
         """Where the rows of the run go on; see `CheckedStore`."""
         done = 0 if state is None else int(state["rows"])
-        return CheckedStore(self.folder, self.run, start, self.rows, done, prepare)
+        return CheckedStore(self.folder, self.run, start, self.rows, done)
 
     def replayed(self) -> "Resumed":
         """The same, from the start."""
@@ -68,11 +64,26 @@ def to_resume(folder: Path) -> Resumed | Result:
     A run whose rows are complete, and whose process was killed after that, gets its other files.
 
     Raises:
-        HerringboneError: the folder holds no run that can be resumed.
+        HerringboneError: the folder holds no run that can be resumed, or another process writes
+            into it.
     """
+    if read_run_file(folder) is None:
+        raise _nothing(folder)
+    lock = FolderLock(folder)  # a run whose rows are complete may still be going on
+    try:
+        return _read(folder)
+    finally:
+        lock.release()
+
+
+def _nothing(folder: Path) -> ResourceError:
+    return ResourceError(f"{folder} holds no run of the command 'herringbone run' to resume")
+
+
+def _read(folder: Path) -> Resumed | Result:
     run = read_run_file(folder)
     if run is None or not run.asked:
-        raise ResourceError(f"{folder} holds no run of the command 'herringbone run' to resume")
+        raise _nothing(folder)
     table = stored_table(folder, run.columns, run.others)
     result = load(folder)
     if run.state is State.RUNNING or result.outcome.kind is OutcomeKind.INTERRUPTED:

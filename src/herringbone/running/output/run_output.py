@@ -64,21 +64,23 @@ class RunOutput:
         return self._start / self.shown
 
     def claim(self, system: System, scene: Scene, options: object) -> None:
-        """Choose the folder, before anything is computed or written.
+        """Choose the folder and keep others out of it, before anything is computed or written.
 
         Raises:
-            HerringboneError: another run is there.
+            HerringboneError: another run is there, or writes there.
         """
         settings = settings_of(system, scene, options)
         key = key_of(settings)
         if self.resumed is not None:
+            self._lock = FolderLock(self.path)
             self.resumed.check(settings)
             self._run = self.resumed.run
             return
         wanted = self.folder or Path("results") / f"{self.system or system.name}-{scene.name}"
         named = self.folder is not None
-        found = claimed(Claim(self._start / wanted, named, key, settings, self.overwrite))
-        self.shown = wanted.with_name(found.name)
+        claim = Claim(self._start / wanted, named, key, settings, self.overwrite)
+        self._lock = claimed(claim)
+        self.shown = wanted.with_name(self._lock.folder.name)
         if self.shown != wanted:
             self.notes.append(
                 f"results go to {self.shown}: {wanted} holds a run of other settings, or of an "
@@ -92,7 +94,7 @@ class RunOutput:
     def stream(self, start: Result, every: int = 1, *, keeps_all: bool = False) -> Streaming:
         """Where the rows of the run go.
 
-        With the first of them the folder is made, and what another run has left there is removed.
+        With the first of them, what another run has left in the folder is removed.
 
         Args:
             start: all that is known of the result before there are rows.
@@ -104,18 +106,12 @@ class RunOutput:
         """
         if self.resumed is not None:
             state = None if keeps_all else self.resumed.state
-            self._store = self.resumed.store(start, state, self._take)
+            self._store = self.resumed.store(start, state)
             return Streaming(self._store, every, keeps_all, state)
         self._store = Store(self.path, self._run, start, self._empty)
         return Streaming(self._store, every, keeps_all)
 
-    def _take(self) -> None:
-        """Make the folder, and keep others out of it."""
-        if self._lock is None:
-            self._lock = FolderLock(self.path)
-
     def _empty(self) -> None:
-        self._take()
         try:
             remove_results(self.path)
         except OSError as error:
