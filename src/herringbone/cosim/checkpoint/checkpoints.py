@@ -80,6 +80,7 @@ class Checkpoints:
         run.record.put(saved["record"])
         stream.rows = int(saved["rows"])
         stream.last = float(saved["last"])
+        stream.nan = {int(column): float(time) for column, time in saved["nan"]}
         return int(saved["done"]), float(saved["wall"])
 
 
@@ -95,6 +96,7 @@ def _saved(run: "Run", done: int, wall: float) -> Arrays:
         "record": run.record.saved(),
         "rows": np.array(stream.rows),
         "last": np.array(stream.last),
+        "nan": np.array([*stream.nan.items()], dtype=float).reshape(-1, 2),
         "done": np.array(done),
         "wall": np.array(wall),
     }
