@@ -8,6 +8,7 @@ from herringbone.commands.output import check_writable, say, show, written_into
 from herringbone.core import ParameterError
 from herringbone.core.frequencies import HIGHEST
 from herringbone.core.places.files import is_file
+from herringbone.result.folder.names import STUDY, STUDY_TABLE
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -37,9 +38,7 @@ def run(options: argparse.Namespace) -> int:
         raise ParameterError(f"there is no folder {options.folder}")
     if is_file(options.folder):
         raise ParameterError(f"{options.folder} is a file: plot takes the folder that it is in")
-    from herringbone.studies.table import TABLE  # noqa: PLC0415 (pandas: lazy)
-
-    study = is_file(options.folder / TABLE)
+    study = any(is_file(options.folder / name) for name in (STUDY, STUDY_TABLE))
     if study and (options.columns or options.highest):
         raise ParameterError("--columns and --highest are of runs; this is the folder of a sweep")
     check_writable(output)

@@ -15,7 +15,7 @@ from herringbone.core.caching.keys import digest_of
 from herringbone.core.places.files import PART, is_file
 from herringbone.core.wording import option
 from herringbone.result.folder.formatted import read_formatted
-from herringbone.result.folder.names import STUDY, State
+from herringbone.result.folder.names import STUDY, State, remove_study
 from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.writing import refused, write_text
 from herringbone.result.result import Result
@@ -63,10 +63,11 @@ class StudyFolder:
 
         Args:
             asked: what tells studies apart, for JSON.
-            overwrite: the table of another study may be replaced.
+            overwrite: the table of another study may be replaced; it goes at once, with its
+                pictures.
 
         Raises:
-            HerringboneError: another study is there.
+            HerringboneError: another study is there, or its table cannot be removed.
         """
         content = {"format": FORMAT, **asked}
         known = read_study(self.folder)
@@ -75,6 +76,11 @@ class StudyFolder:
                 f"{self.folder} holds {_other(known, content)}; choose another folder, or "
                 f"{option('overwrite', True)}: chains that both have are not computed again"
             )
+        if known != content:
+            try:
+                remove_study(self.folder)
+            except OSError as error:
+                raise refused(error, self.folder) from error
         write_text(self.folder / STUDY, json.dumps(content, indent=1) + "\n")
 
     def _file(self, chain: Chain) -> Path:

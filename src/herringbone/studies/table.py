@@ -11,7 +11,7 @@ import pandas as pd
 from herringbone.core import ResourceError
 from herringbone.core.facts import Facts
 from herringbone.core.places.files import is_file
-from herringbone.result.folder.names import UNITS
+from herringbone.result.folder.names import STUDY_PARQUET, STUDY_TABLE, UNITS
 from herringbone.result.folder.writing import replacing
 from herringbone.result.tables import (
     as_numbers,
@@ -26,7 +26,6 @@ from herringbone.studies.store import StudyFolder
 from herringbone.studies.study import Study
 from herringbone.studies.working.chain import Done
 
-TABLE, PARQUET = "table.csv", "table.parquet"
 _POINT, _OUTCOME, _MESSAGE = "point", "outcome", "message"
 _ROWS_IN_PIECE = 4096
 
@@ -56,17 +55,17 @@ class StudyTable(Facts):
         """
         if parquet:
             parquet_library()
-        files = [folder / UNITS, folder / TABLE]
+        files = [folder / UNITS, folder / STUDY_TABLE]
         with replacing(files[0]) as stream:
             write_units(stream, self.units)
         with replacing(files[1]) as stream:
             write_csv(stream, list(self.data.columns), pieces_of(self.data))
         if parquet:
-            files.append(folder / PARQUET)
+            files.append(folder / STUDY_PARQUET)
             with replacing(files[2], text=False) as stream:
                 write_parquet(stream, pieces_of(self.data))
         else:
-            (folder / PARQUET).unlink(missing_ok=True)
+            (folder / STUDY_PARQUET).unlink(missing_ok=True)
         return files
 
 
@@ -80,13 +79,13 @@ def read_table(folder: str | Path) -> StudyTable:
         ResourceError: it has no table, or that is damaged.
     """
     folder = Path(folder)
-    if not is_file(folder / TABLE):
+    if not is_file(folder / STUDY_TABLE):
         raise ResourceError(
-            f"{folder} has no {TABLE}: it holds no sweep, or one that was cut off; the same sweep "
-            "into this folder goes on"
+            f"{folder} has no {STUDY_TABLE}: it holds no sweep, or one that was cut off; the same "
+            "sweep into this folder goes on"
         )
     try:
-        texts = pd.read_csv(folder / TABLE, dtype=str, keep_default_na=False)
+        texts = pd.read_csv(folder / STUDY_TABLE, dtype=str, keep_default_na=False)
         data = texts.apply(as_numbers).astype({_POINT: int})
         with (folder / UNITS).open(encoding="utf-8", newline="") as stream:
             rows = [row for row in csv.reader(stream) if len(row) == 2][1:]

@@ -15,6 +15,7 @@ import pytest
 from support.studies import Cheap
 
 import herringbone as hb
+from herringbone.commands.main import main
 from herringbone.core import HerringboneError, ParameterError, ResourceError
 from herringbone.core.places.paths import module_path
 from herringbone.cosim.structure.system_file import find_system, read_system
@@ -254,6 +255,24 @@ def test_an_interrupted_sweep_has_a_table_of_its_points_so_far(tmp_path):
     whole = hb.sweep("gearbox", evaluator=Cheap(), output=tmp_path, **wanted).table
     assert found["x"].tolist() == whole["x"].tolist()[:7]
     assert not list((tmp_path / "chains").glob(".*"))
+
+
+def test_nothing_of_another_study_stays_when_one_is_cut_off(tmp_path):
+    """Its table and pictures would be taken for those of the study that `study.json` tells."""
+    wanted = {"output": tmp_path, "workers": 1, "overwrite": True}
+    hb.sweep("gearbox", evaluator=Cheap(), speed=[1.0, 2.0], parquet=True, **wanted)
+    for name in ("levels.png", "tornado.x.png", "mine.png"):
+        (tmp_path / name).touch()
+
+    def progress(points):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        hb.sweep("gearbox", evaluator=Cheap(), speed=[3.0], progress=progress, **wanted)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["chains", "mine.png", "study.json"]
+    with pytest.raises(ResourceError, match=r"has no table\.csv: .* one that was cut off"):
+        hb.read_table(tmp_path)
+    assert main(["plot", str(tmp_path)]) == 2
 
 
 def test_long_periods_are_told():

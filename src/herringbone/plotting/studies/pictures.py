@@ -25,10 +25,10 @@ from herringbone.plotting.studies.sensitivities import PARAMETER, band, tornado
 from herringbone.plotting.studies.steady_state import steady_picture
 from herringbone.plotting.studies.table import Points
 from herringbone.plotting.studies.waterfall import waterfall
+from herringbone.result.folder.names import STUDY_PICTURES
 
 SPREAD = 1.0
 """Of parameters that nobody has measured, if nothing else is said: a factor of 2."""
-_PICTURES = "levels.png", "map.png", "tornado.*.png", "waterfall.*.png"
 
 
 class StudyPictures(NamedTuple):
@@ -88,7 +88,7 @@ def write_study_pictures(
 
 def remove_others(folder: Path, files: Sequence[Path]) -> None:
     """Remove pictures of an earlier study in its folder, which the present one does not have."""
-    for pattern in _PICTURES:
+    for pattern in STUDY_PICTURES:
         for file in set(folder.glob(pattern)) - set(files):
             file.unlink()
 

@@ -11,6 +11,8 @@ RUN, ROWS, OTHERS, CHECKPOINT = "run.json", "results.npy", "others.jsonl", "chec
 TABLE, UNITS, PARQUET = "results.csv", "units.csv", "results.parquet"
 STUDY = "study.json"
 """What the folder of a sweep holds instead."""
+STUDY_TABLE, STUDY_PARQUET = "table.csv", "table.parquet"
+STUDY_PICTURES = "levels.png", "map.png", "tornado.*.png", "waterfall.*.png"
 SUMMARY, TEXT = "summary.json", "summary.txt"
 OLD = ".before"
 """Ends the name of the last checkpoint but one."""
@@ -49,3 +51,15 @@ def remove_reports(folder: Path) -> None:
             file.unlink(missing_ok=True)
     for file in folder.glob(f".*{PART}"):
         file.unlink(missing_ok=True)
+
+
+def remove_study(folder: Path) -> None:
+    """Remove a study's table and pictures, but not what it has computed; raises OSError.
+
+    `study.json` goes first: a table without it belongs to no study.
+    """
+    for name in (STUDY, STUDY_TABLE, STUDY_PARQUET, UNITS):
+        (folder / name).unlink(missing_ok=True)
+    for pattern in STUDY_PICTURES:
+        for file in folder.glob(pattern):
+            file.unlink(missing_ok=True)
