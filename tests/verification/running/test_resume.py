@@ -10,10 +10,11 @@ import time
 
 import numpy as np
 import pytest
-from support.cut_off import found_in, killed, killed_at, ran, taken_up, write_often
+from support.cut_off import Killed, found_in, killed, killed_at, ran, taken_up, write_often
 
 import herringbone as hb
 from herringbone.commands.main import main
+from herringbone.cosim.rows.stream import Stream
 from herringbone.running import api
 
 
@@ -165,6 +166,43 @@ def test_killed_before_a_further_run_told_the_error(tmp_path, capsys, monkeypatc
         said = capsys.readouterr().err
         assert "the process ended before its error was known" in said
     assert (folder / "results.csv").is_file()
+
+
+def test_a_run_that_still_looks_for_its_error_is_left_alone(tmp_path, capsys, monkeypatch):
+    folder, said = tmp_path / "out", []
+
+    def meanwhile(*arguments, **options):
+        assert main(["run", "--resume", str(folder)]) == 2
+        said.append(capsys.readouterr().err)
+        raise Killed
+
+    with monkeypatch.context() as patched:
+        patched.setattr("herringbone.running.prepared_runs.verified", meanwhile)
+        with pytest.raises(Killed):
+            main([*RIG, "--algorithm=li:degree=3", "--verify", "-o", str(folder)])
+    assert "another run is writing into" in said[0]
+
+
+def test_a_column_that_was_no_number_before_the_checkpoint(tmp_path, capsys, monkeypatch):
+    """The resumed run ends as the whole one, though it never sees those rows."""
+    append = Stream._append
+
+    def first_are_nan(self, times, values, others):
+        values[times < 1e-4, 0] = np.nan
+        append(self, times, values, others)
+
+    monkeypatch.setattr(Stream, "_append", first_are_nan)
+    options = [*RIG, "--algorithm=li"]
+    assert main([*options, "-o", str(tmp_path / "whole")]) == 1
+    whole = capsys.readouterr().err
+    killed(tmp_path / "killed", options, monkeypatch, 3)
+    begun = taken_up(monkeypatch)
+    assert main(["run", "--resume", str(tmp_path / "killed")]) == 1
+    assert begun
+    assert begun[0] * 4e-5 > 1e-4
+    (line,) = [line for line in whole.splitlines() if "completed_with_nan" in line]
+    assert line in capsys.readouterr().err
+    assert found_in(tmp_path / "killed") == found_in(tmp_path / "whole")
 
 
 @pytest.mark.parametrize("kilobytes", [0, 1, 60, 400, 600, 2000])
