@@ -9,7 +9,7 @@ import numpy as np
 from herringbone.analysis.rigid_rotation import names_of_states
 from herringbone.analysis.rotation_search import scales
 from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples, still
-from herringbone.analysis.twin.condensed.equations import laws_of, settle_laws
+from herringbone.analysis.twin.condensed.equations import periodic_arguments, settle_laws
 from herringbone.analysis.twin.condensed.laws import laws_along
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import StructureError
@@ -107,7 +107,7 @@ def _neutral(system: Condensed) -> np.ndarray:
     found = np.flatnonzero(still(modes.rates) & (turns <= _NONE * turns.max(initial=0.0)))
     seen = np.abs(modes.arguments[:, found])
     size = np.abs(modes.arguments).max(axis=1, initial=0.0)
-    wrong = found[(seen > _NONE * size[:, None]).any(axis=0)]
+    wrong = found[((seen > _NONE * size[:, None]) & _counts(system)[:, None]).any(axis=0)]
     if wrong.size:
         name = names_of_states(system.twin)[most_moved(system, int(wrong[0]))]
         raise StructureError(
@@ -116,6 +116,15 @@ def _neutral(system: Condensed) -> np.ndarray:
             "take a run, in sweeps transient ones"
         )
     return found
+
+
+def _counts(system: Condensed) -> np.ndarray:
+    """Arguments (arguments,) that laws depend on: not angles that only grow without a period."""
+    modes, equations = system.modes, system.equations
+    size = np.abs(equations.c) @ np.abs(modes.rigid)
+    counts = ~(np.abs(modes.of_angles) > _NONE * size).any(axis=1)
+    counts[[at for _, at, _ in periodic_arguments(system.twin, equations.laws)]] = True
+    return counts
 
 
 def most_moved(system: Condensed, mode: int) -> int:
@@ -145,21 +154,13 @@ def turns_of(system: Condensed, of_angle: np.ndarray) -> tuple[Fraction, ...]:
 
 
 def _turns(system: Condensed, of_angle: np.ndarray) -> Iterator[Fraction]:
-    twin, at = system.twin, 0
-    for p in system.equations.laws:
-        instance = twin.instances[p]
-        laws = laws_of(instance)
-        assert laws is not None
-        block = instance.block.copy()
-        laws.prepare(block)
-        laws.settle(block)
-        for argument, turns in laws.periods(block):
-            ratio = float(abs(of_angle[at + argument]))
-            whole = Fraction(ratio).limit_denominator(_FINEST)
-            if not whole or abs(float(whole) - ratio) > _EXACT * ratio:
-                raise StructureError(
-                    f"{instance.name}: it turns {ratio:.9g} times as fast as the reference shaft, "
-                    "no ratio of whole numbers, so that the motion does not repeat"
-                )
-            yield turns / whole
-        at += len(laws.arguments)
+    twin = system.twin
+    for p, argument, turns in periodic_arguments(twin, system.equations.laws):
+        ratio = float(abs(of_angle[argument]))
+        whole = Fraction(ratio).limit_denominator(_FINEST)
+        if not whole or abs(float(whole) - ratio) > _EXACT * ratio:
+            raise StructureError(
+                f"{twin.instances[p].name}: it turns {ratio:.9g} times as fast as the reference "
+                "shaft, no ratio of whole numbers, so that the motion does not repeat"
+            )
+        yield turns / whole

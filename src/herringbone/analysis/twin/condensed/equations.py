@@ -3,8 +3,9 @@
 The rest is had from the components' own kernels at unit vectors, and checked to be linear.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
@@ -69,6 +70,30 @@ def laws_of(instance: Instance) -> Laws | None:
     if why := laws.refusal(instance.block):
         raise StructureError(f"{instance.name}: {why}, so that it is no linear part with laws")
     return laws
+
+
+def periodic_arguments(twin: Twin, parts: Sequence[int]) -> Iterator[tuple[int, int, Fraction]]:
+    """Arguments with which laws repeat, such as the angle of a gear pair.
+
+    Args:
+        twin: the system.
+        parts: numbers of those that have laws.
+
+    Yields:
+        Number of a part, that of the argument among those of all laws, and the turns of it after
+        which the law repeats.
+    """
+    at = 0
+    for p in parts:
+        instance = twin.instances[p]
+        laws = laws_of(instance)
+        assert laws is not None
+        block = instance.block.copy()
+        laws.prepare(block)
+        laws.settle(block)
+        for argument, turns in laws.periods(block):
+            yield p, at + argument, turns
+        at += len(laws.arguments)
 
 
 def settle_laws(twin: Twin, blocks: np.ndarray, ramp: float = 0.0) -> None:

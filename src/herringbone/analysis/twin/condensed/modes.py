@@ -6,13 +6,17 @@ that no digits are lost to revolutions.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eig, matrix_balance, qr
 
-from herringbone.analysis.twin.condensed.equations import Equations, laws_of
+from herringbone.analysis.twin.condensed.equations import (
+    Equations,
+    laws_of,
+    periodic_arguments,
+)
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError
 from herringbone.core.caching.remembered import Remembered
@@ -123,7 +127,7 @@ def make_modes(
     moving = _moving(a, b, twin.turning)
     constant = np.where(moving, 0.0, x0)
     b[:, -1] += a @ constant
-    rigid, references = _rotations(twin, a, references)
+    rigid, references = _rotations(twin, a, references, _seen(twin, equations))
     inside = np.array([i for i in range(n) if moving[i] and i not in references], dtype=int)
     rest = a - rigid @ a[references]
     driven = (b - rigid @ b[references])[inside]
@@ -170,10 +174,20 @@ def _moving(a: np.ndarray, b: np.ndarray, turning: Sequence[int]) -> np.ndarray:
         moving = now
 
 
+def _seen(twin: Twin, equations: Equations) -> set[int]:
+    """States with which laws repeat, such as a gear's angle."""
+    rows = [at for _, at, _ in periodic_arguments(twin, equations.laws)]
+    return set(np.flatnonzero(equations.c[rows].any(axis=0)).tolist())
+
+
 def _rotations(
-    twin: Twin, a: np.ndarray, wanted: Sequence[int]
+    twin: Twin, a: np.ndarray, wanted: Sequence[int], seen: Set[int]
 ) -> tuple[np.ndarray, Sequence[int]]:
-    """Rigid rotations (n, k), 1 at its own reference and 0 at those of the others; references."""
+    """Rigid rotations (n, k), 1 at its own reference and 0 at those of the others; references.
+
+    These are the wanted ones, or such that laws see: where a freewheel lets a shaft slip whose
+    angle no law sees, that angle would begin anywhere, and all that laws see with it.
+    """
     turning = twin.turning
     if not turning:
         return np.zeros((len(a), 0)), []
@@ -183,8 +197,11 @@ def _rotations(
         return np.zeros((len(a), 0)), []
     chosen = [turning.index(i) for i in wanted if i in turning]
     if len(chosen) != free.shape[1] or np.linalg.matrix_rank(free[chosen]) < len(chosen):
-        _, _, order = qr(free.T, pivoting=True)
-        chosen = order[: free.shape[1]]
+        among = [at for at, i in enumerate(turning) if i in seen]
+        if np.linalg.matrix_rank(free[among]) < free.shape[1]:
+            among = list(range(len(turning)))
+        _, _, order = qr(free[among].T, pivoting=True)
+        chosen = [among[at] for at in order[: free.shape[1]]]
     rigid = np.zeros((len(a), len(chosen)))
     rigid[turning] = free @ np.linalg.inv(free[chosen])
     return rigid, [turning[i] for i in chosen]
