@@ -24,11 +24,10 @@ from herringbone.analysis.leaner.question import Question, apart, lines_of
 from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
-from herringbone.analysis.twin.condensed.lean import WHOLE
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.measured import DEGREES
+from herringbone.core.lean import WHOLE
 from herringbone.core.process.one_thread import one_blas_thread
-from herringbone.running.operating.lean import lean_of
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.scenes import Ask, Motion, Operating, Scene
@@ -96,7 +95,7 @@ def steady_answer(name: str, wanted: float, ask: Ask, speeds: np.ndarray) -> Ans
     solver, _ = prepared_solver(
         _RIG, scene, Point(speed=ends[0]), Wishes(), tolerance=found.tolerance
     )
-    own = solver.leaner(lean_of(found.scene))
+    own = solver.leaner(found.scene.model)
     seconds = lesser(lambda: solved(own, speeds))
     fine = solver.leaner(WHOLE, _FINE)
     (question,) = found.questions

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from os import PathLike
+from typing import Any
 
 from herringbone.core.errors import ParameterError
 
@@ -42,6 +43,19 @@ def check_called(name: str, given: object) -> None:
     """Refuse what is neither True, False nor a function; raises ParameterError."""
     if not isinstance(given, bool) and not callable(given):
         raise ParameterError(f"{name} = {_cut(given)}: it takes True, False or a function")
+
+
+def names(given: object, name: str) -> tuple[str, ...]:
+    """A name, or several; raises ParameterError for something else, and blank ones."""
+    found = several(given)
+    if not all(isinstance(each, str) and each.strip() for each in found):
+        raise ParameterError(f"{name} = {given!r}: it takes a name or a list of names")
+    return tuple(found)
+
+
+def several(given: object) -> list[Any]:
+    """What a list or tuple has; anything else stands for one."""
+    return list(given) if isinstance(given, list | tuple) else [given]
 
 
 def _cut(given: object) -> str:

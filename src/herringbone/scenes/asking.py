@@ -7,7 +7,9 @@ from functools import partial
 
 from herringbone.analysis.leaner.form import Form
 from herringbone.core import ParameterError
-from herringbone.scenes.checks import chosen, ends, names, number, several
+from herringbone.core.given import names, several
+from herringbone.core.lean import WHOLE, Lean
+from herringbone.scenes.checks import chosen, ends, number
 
 SHARE = 0.5
 """Of a tolerance, for what the model leaves out, and as much for the solver."""
@@ -136,34 +138,35 @@ class Operating:
             put("solver_tolerance", given)
 
 
-@dataclass(frozen=True)
-class Model:
-    """What a model leaves out, and what is known of its error.
+@dataclass(frozen=True, kw_only=True)
+class Model(Lean):
+    """What a model leaves out, see `Lean`, and what is known of its error.
 
     Attributes:
-        hold: states that keep their start values.
-        one_way: parts that are driven but not felt.
         error: the largest of all that was asked, certified; None: unknown.
-        speed, torque: where that was certified.
-        frozen: parts whose laws are straight lines about their mean deflections.
-        linear: parts whose laws have mean slopes besides.
-        harmonics: parts, and how many harmonics of their laws' tables are kept.
+        speed, torque: where that was certified, as those of `Operating`.
     """
 
-    hold: tuple[str, ...] = ()
-    one_way: tuple[str, ...] = ()
     error: float | None = None
     speed: Range | None = None
     torque: Range | None = None
-    frozen: tuple[str, ...] = ()
-    linear: tuple[str, ...] = ()
-    harmonics: tuple[tuple[str, int], ...] = ()
 
-    def __bool__(self) -> bool:
-        return bool(self.hold or self.parts)
+    def __post_init__(self) -> None:
+        """Take a number for both ends of a range, and what `Lean` takes, and check values.
+
+        Raises:
+            ParameterError: a value is of the wrong type or out of range.
+        """
+        super().__post_init__()
+        put = partial(object.__setattr__, self)
+        if self.error is not None:
+            put("error", number(self.error, "model: error"))
+        if self.speed is not None:
+            put("speed", ends(self.speed, "model: speed", still=False))
+        if self.torque is not None:
+            put("torque", ends(self.torque, "model: torque"))
 
     @property
-    def parts(self) -> tuple[str, ...]:
-        """Parts of which something is left out."""
-        tables = (part for part, _ in self.harmonics)
-        return (*self.one_way, *self.frozen, *self.linear, *tables)
+    def left_out(self) -> Lean:
+        """What is left out alone, so that models that leave out the same are equal."""
+        return WHOLE | self

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ from herringbone.analysis.leaner.form import Form
 from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
 from herringbone.scenes.asking import Ask, Model, Motion, Operating, Range
-from herringbone.scenes.checks import ends, names, number
+from herringbone.scenes.checks import ends
 
 ASKING = {"ask", "operating", "model"}
 """Keys of a scene that are read here."""
@@ -54,37 +55,15 @@ def _ask(data: Any) -> Ask:  # noqa: ANN401 (anything from TOML)
 
 def _operating(data: Any) -> Operating:  # noqa: ANN401
     _known(data, "operating", {"motion", "speed", "torque", "solver_tolerance"})
-    speed, torque = _range(data, "operating", "speed"), _range(data, "operating", "torque")
-    if speed is not None:
-        speed = (speed[0] / R_MIN, speed[1] / R_MIN)
+    speed, torque = _speed(data, "operating"), _range(data, "operating", "torque")
     given = data.get("solver_tolerance")
     return Operating(data.get("motion", Motion.STEADY), speed, torque, given)
 
 
 def _model(data: Any) -> Model:  # noqa: ANN401
-    _known(data, "model", {"hold", *_PARTS, "harmonics", "error", "speed", "torque"})
-    error = None if "error" not in data else number(data["error"], "model: error")
-    speed = _range(data, "model", "speed")
-    return Model(
-        names(data.get("hold", []), "model: hold"),
-        names(data.get("one_way", []), "model: one_way"),
-        error,
-        None if speed is None else (speed[0] / R_MIN, speed[1] / R_MIN),
-        _range(data, "model", "torque"),
-        names(data.get("frozen", []), "model: frozen"),
-        names(data.get("linear", []), "model: linear"),
-        _counts(data.get("harmonics", {})),
-    )
-
-
-def _counts(given: Any) -> tuple[tuple[str, int], ...]:  # noqa: ANN401
-    """Harmonics that are kept, by part."""
-    whole = isinstance(given, dict) and all(type(count) is int for count in given.values())
-    if not whole or any(count < 0 for count in given.values()):
-        raise ParameterError(
-            f"model: harmonics = {given!r}: it takes {{ PART = COUNT }}, whole numbers from 0"
-        )
-    return tuple(given.items())
+    _known(data, "model", {field.name for field in fields(Model)})
+    at = {"speed": _speed(data, "model"), "torque": _range(data, "model", "torque")}
+    return Model(**{**data, **at})
 
 
 def _known(data: Any, name: str, keys: set[str]) -> None:  # noqa: ANN401
@@ -99,6 +78,12 @@ def _known(data: Any, name: str, keys: set[str]) -> None:  # noqa: ANN401
 def _range(data: Mapping[str, Any], table: str, key: str) -> Range | None:
     """A number, or [LOWEST, HIGHEST]; speeds are in r/min here, and checked as such."""
     return ends(data[key], f"{table}: {key}", still=key != "speed") if key in data else None
+
+
+def _speed(data: Mapping[str, Any], table: str) -> Range | None:
+    """The speed [rad/s]."""
+    given = _range(data, table, "speed")
+    return None if given is None else (given[0] / R_MIN, given[1] / R_MIN)
 
 
 def asking_text(asks: tuple[Ask, ...], operating: Operating, model: Model) -> Iterator[str]:

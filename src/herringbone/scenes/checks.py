@@ -6,6 +6,7 @@ from numbers import Real
 from typing import Any, TypeVar
 
 from herringbone.core import ParameterError
+from herringbone.core.given import several
 
 _Kind = TypeVar("_Kind", bound=StrEnum)
 _ENDS = 2
@@ -50,19 +51,6 @@ def number(given: Any, name: str) -> float:  # noqa: ANN401
     if isinstance(given, bool) or not isinstance(given, Real) or not math.isfinite(given):
         raise ParameterError(f"{name} = {given!r}: it takes a finite number")
     return float(given)
-
-
-def names(given: Any, name: str) -> tuple[str, ...]:  # noqa: ANN401
-    """A name, or several; raises ParameterError for something else, and blank ones."""
-    found = several(given)
-    if not all(isinstance(each, str) and each.strip() for each in found):
-        raise ParameterError(f"{name} = {given!r}: it takes a name or a list of names")
-    return tuple(found)
-
-
-def several(given: Any) -> list[Any]:  # noqa: ANN401
-    """What a list or tuple has; anything else stands for one."""
-    return list(given) if isinstance(given, list | tuple) else [given]
 
 
 def ends(given: Any, name: str, *, still: bool = True) -> tuple[float, float]:  # noqa: ANN401

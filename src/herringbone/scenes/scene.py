@@ -9,13 +9,14 @@ from typing import Any
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.facts import Facts
+from herringbone.core.given import several
 from herringbone.core.names import meant, shown
 from herringbone.core.places.files import beside, is_file
 from herringbone.core.reading.structured import read_toml
 from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, part_files
 from herringbone.scenes.asking import Ask, Model, Operating
 from herringbone.scenes.asking_text import ASKING, read_asking
-from herringbone.scenes.checks import chosen, duration, several
+from herringbone.scenes.checks import chosen, duration
 
 DEFAULT_SCENE = "loaded"
 _TABLES = {"set", "start_offset"}
@@ -70,8 +71,8 @@ class Scene(Facts):
         """Take a text for the start and an Ask for the only one, and check what is given.
 
         Raises:
-            ParameterError: there is no such start, a time is no positive, finite number, or what
-                is asked is no Ask.
+            ParameterError: there is no such start, a time is no positive, finite number, what is
+                asked is no Ask, or the model no Model.
         """
         object.__setattr__(self, "start", chosen(Start, self.start, "scene: start"))
         for key in sorted(_NUMBERS):
@@ -79,6 +80,8 @@ class Scene(Facts):
         object.__setattr__(self, "asks", tuple(several(self.asks)))
         if wrong := [ask for ask in self.asks if not isinstance(ask, Ask)]:
             raise ParameterError(f"scene: asks = {wrong[0]!r}: it takes Ask(...), or several")
+        if not isinstance(self.model, Model):
+            raise ParameterError(f"scene: model = {self.model!r}: it takes Model(...)")
 
     def _facts(self) -> dict[str, str]:
         return {

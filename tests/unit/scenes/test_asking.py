@@ -50,7 +50,7 @@ def test_all_that_can_be_asked(tmp_path):
     )
     at = 1000.0 / _R_MIN
     tables = (("first.gear_mesh", 8), ("second", 0))
-    assert found.model == Model(("housing.q[7]",), (), 0.002, (at, at), harmonics=tables)
+    assert found.model == Model(("housing.q[7]",), harmonics=tables, error=0.002, speed=(at, at))
 
 
 def test_what_is_written_is_read_again(tmp_path):
@@ -109,6 +109,19 @@ def test_refused_in_one_line(tmp_path, text, message):
         (lambda: Operating(torque=(1.0, 2.0, 3.0)), "operating: torque = (1.0, 2.0, 3.0): a numb"),
         (lambda: Operating("transient", speed=9.0), "a transient has those of its cycle"),
         (lambda: Scene("x", asks="torque"), "scene: asks = 'torque': it takes Ask(...), or sever"),
+        (lambda: Scene("x", model="torque"), "scene: model = 'torque': it takes Model(...)"),
+        (lambda: Model(hold=5), "model: hold = 5: it takes a name or a list of names"),
+        (lambda: Model(hold=("q", 1)), "model: hold = ('q', 1): it takes a name or a list"),
+        (lambda: Model(one_way=None), "model: one_way = None: it takes a name or a list of names"),
+        (lambda: Model(frozen=" "), "model: frozen = ' ': it takes a name or a list of names"),
+        (lambda: Model(linear={"x": 1}), "model: linear = {'x': 1}: it takes a name or a list of"),
+        (lambda: Model(harmonics="mesh"), "model: harmonics = 'mesh': it takes { PART = COUNT }"),
+        (lambda: Model(harmonics=("mesh", 8)), "model: harmonics = ('mesh', 8): it takes { PART ="),
+        (lambda: Model(harmonics={"mesh": 8.0}), "model: harmonics = {'mesh': 8.0}: it takes { P"),
+        (lambda: Model(harmonics={5: 8}), "model: harmonics = {5: 8}: it takes { PART = COUNT }"),
+        (lambda: Model(error="1%"), "model: error = '1%': it takes a finite number"),
+        (lambda: Model(speed=(2.0, 1.0)), "model: speed = [2, 1]: the lower one first"),
+        (lambda: Model(torque="low"), "model: torque = 'low': it takes a finite number"),
     ],
 )
 def test_scripts_are_refused_as_files_are(make, message):
@@ -121,6 +134,9 @@ def test_what_stands_for_one_is_one():
         speed=(104.7, 104.7), torque=(-30.0, -30.0)
     )
     assert Ask("x", "order", orders=1).orders == (1.0,)
+    assert Model("housing.q[7]", harmonics={"mesh": 8}, speed=9) == Model(
+        hold=("housing.q[7]",), harmonics=(("mesh", 8),), speed=(9.0, 9.0)
+    )
     assert Scene("x", asks=Ask("torque")).asks == (Ask(("torque",)),)
     assert Scene("x", asks=[Ask("torque")]).asks == (Ask(("torque",)),)
 

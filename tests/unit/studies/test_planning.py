@@ -11,12 +11,12 @@ import pytest
 import herringbone as hb
 from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import Question, apart, lines_of
-from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.core import ParameterError
+from herringbone.core.lean import WHOLE, Lean
 from herringbone.core.places.paths import component_folder
 from herringbone.plotting.studies.plan_chart import plan_chart
 from herringbone.running.operating.asked_tolerance import asked_tolerance, tolerance_notes
-from herringbone.running.operating.lean import certified_row, lean_notes, lean_of
+from herringbone.running.operating.lean import certified_row, lean_notes
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Ask, Model, Motion, Operating, Scene, read_scene
@@ -53,7 +53,7 @@ def test_the_choice_meets_its_tolerance_where_nothing_was_tested():
     assert found.choice.measured is not None
     assert found.choice.measured.ratio <= SHARE
     whole, _ = prepared_solver("test_rig", wishes=Wishes(values=_STILL), tolerance=1e-4)
-    lean = whole.leaner(lean_of(found.scene))
+    lean = whole.leaner(found.scene.model)
     (question,) = found.questions
     for speed in (1217.0, 1283.0, 1391.0):
         point = hb.Point(speed=speed * _R_MIN)
@@ -132,7 +132,7 @@ def test_what_is_written_runs_and_states_its_error(tmp_path):
     found = _levels(for_fmu=True)
     file = write_plan(found, tmp_path)[0]
     scene = read_scene(file)
-    assert scene.model.hold == found.choice.lean.held
+    assert scene.model.hold == found.choice.lean.hold
     error = f"{100.0 * found.choice.measured.error:.2g} %"
     within = hb.steady("test_rig", scene=file, speed=1300.0 * _R_MIN)
     assert any("leaner model" in n and error in n and "not known" not in n for n in within.notes)
@@ -150,7 +150,7 @@ def test_of_several_questions_the_largest_error_is_stated():
     scene = Scene("two", values=_STILL, asks=asks, operating=Operating(speed=(speed, speed)))
     found = plan("test_rig", scene=scene, for_fmu=True)
     whole, _ = prepared_solver("test_rig", wishes=Wishes(values=_STILL), tolerance=1e-5)
-    lean, point = whole.leaner(lean_of(found.scene)), hb.Point(speed=speed)
+    lean, point = whole.leaner(found.scene.model), hb.Point(speed=speed)
     states = lean.solve(point), whole.solve(point)
     truth = [apart(q, *(lines_of(state, q) for state in states)).error for q in found.questions]
     assert max(truth) > 1.5 * found.choice.measured.error

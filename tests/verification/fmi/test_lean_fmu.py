@@ -54,7 +54,7 @@ def test_a_lean_fmu_errs_in_plain_fmpy_what_its_plan_certified(tmp_path):
     assert 0.5 * certified.question.tolerance >= error > 1e-3
     said = f"its error is at most {100.0 * certified.largest:.2g} % of what the scene asks"
     assert said in fmpy.read_model_description(str(lean)).description
-    held = [name for name in found.choice.lean.held if ".q[" in name]
+    held = [name for name in found.choice.lean.hold if ".q[" in name]
     rows = {}
     for fmu in (lean, whole):
         with zipfile.ZipFile(fmu) as archive:

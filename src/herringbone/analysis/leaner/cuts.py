@@ -8,10 +8,11 @@ import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.steady.structure import Structure
-from herringbone.analysis.twin.condensed.lean import Lean, state_names, with_harmonics
+from herringbone.analysis.twin.condensed.lean import state_names, with_harmonics
 from herringbone.analysis.twin.condensed.recorded.wanted import places_seen
 from herringbone.core import StructureError
 from herringbone.core.declaring.roles import PortKind, Role
+from herringbone.core.lean import Lean
 
 _HARMONICS = (16, 8, 4)
 """Of the tables, that are kept."""
@@ -53,7 +54,7 @@ def cuts_of(structure: Structure) -> list[Cut]:
         ]
     if housings:
         found += [
-            Cut("housing driven one way", Lean((), housings), steady=True),
+            Cut("housing driven one way", Lean(one_way=housings), steady=True),
             Cut("housing rigid", Lean(tuple(_states(structure, housings)))),
         ]
     return [cut for cut in found if cut.lean]

@@ -16,8 +16,8 @@ from herringbone.analysis.steady.searching.remarks import (
 from herringbone.analysis.steady.searching.search import Search
 from herringbone.analysis.steady.state import SHOOTING, SteadyState
 from herringbone.analysis.steady.structure import Structure
-from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.core import ParameterError
+from herringbone.core.lean import WHOLE, Lean
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 

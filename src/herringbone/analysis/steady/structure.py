@@ -13,11 +13,11 @@ from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.of_system import SystemLaws, problem_of, turns_of
 from herringbone.analysis.steady.operating_point import SetPoints
-from herringbone.analysis.twin.condensed.lean import Lean
 from herringbone.analysis.twin.condensed.recorded.wanted import Wanted
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.core import StructureError, common_period
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
+from herringbone.core.lean import Lean
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
@@ -99,9 +99,9 @@ class Structure:
         """Linear part and laws, frozen where the model wants it."""
         condensed, lean = self.core.condensed, self.core.lean
         found = problem_of(condensed, self.late)
-        if not (lean.frozen or lean.linear):
+        if not lean.straight:
             return found
-        chosen = tangents_of(condensed, {*lean.frozen, *lean.linear})
+        chosen = tangents_of(condensed, lean.straight)
         straight = np.isin(chosen, tangents_of(condensed, lean.linear))
         return replace(found, laws=FrozenLaws(found, chosen, straight))
 

@@ -23,7 +23,7 @@ from herringbone.result.verification import HALVED, Verification, error_unknown
 from herringbone.running.fused.beside import KIND, with_channels
 from herringbone.running.fused.known_error import KnownError
 from herringbone.running.fused.loop import FusedRun
-from herringbone.running.operating.lean import lean_of, refuse_frozen, with_row
+from herringbone.running.operating.lean import refuse_frozen, with_row
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress, told
 from herringbone.running.reporting.run_result import (
@@ -99,7 +99,7 @@ def fused(
     refuse_frozen(scene)
     with same_folder(), one_blas_thread():
         with activity(f"fusing the parts of {system.name}"):
-            core = Core(system, lean=lean_of(scene))
+            core = Core(system, lean=scene.model.left_out)
             columns = core.chosen(asked.record)
             trial = _trial(core, asked, scene.t_end)
         system = with_channels(system, columns)
@@ -148,7 +148,7 @@ def verified_by_half(
     step = 0.5 * taken["step"]
     steps = Steps(step, int(taken["degree"]), closeness(asked.tolerance or DEFAULT_TOLERANCE))
     with same_folder(), one_blas_thread():
-        core = Core(system, lean=lean_of(scene))
+        core = Core(system, lean=scene.model.left_out)
         columns = core.chosen(asked.record)
         system = with_channels(system, columns)
         run = FusedRun(core, steps, columns, _grid(scene), None)

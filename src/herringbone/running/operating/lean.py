@@ -1,4 +1,4 @@
-"""A leaner model that a scene has: what it is for the core, and what is said of its error."""
+"""A leaner model that a scene has: where it is refused, and what is said of its error."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -14,7 +14,6 @@ from herringbone.scenes import Model, Scene
 from herringbone.scenes.asking import Range
 
 if TYPE_CHECKING:
-    from herringbone.analysis.twin.condensed.lean import Lean
     from herringbone.running.prepared import Wishes
 
 SOURCE = "model left out"
@@ -23,14 +22,6 @@ _ROUNDING = 1e-9
 """Of an end of a range, which was in other units."""
 Own = tuple[float | None, float | None]
 """Speed [rad/s] and torque [N m] that a system has."""
-
-
-def lean_of(scene: Scene) -> "Lean":
-    """What a scene's model leaves out."""
-    from herringbone.analysis.twin.condensed.lean import Lean  # noqa: PLC0415 (numba)
-
-    model = scene.model
-    return Lean(model.hold, model.one_way, model.frozen, model.linear, model.harmonics)
 
 
 def refuse_lean(scene: Scene) -> None:
@@ -45,7 +36,7 @@ def refuse_lean(scene: Scene) -> None:
 
 def refuse_frozen(scene: Scene) -> None:
     """Refuse frozen laws in a run; raises ParameterError."""
-    if scene.model.frozen or scene.model.linear:
+    if scene.model.straight:
         raise ParameterError(
             f"scene {scene.name}: [model]: laws are frozen in steady states, which tell the model "
             "error, and in sweeps of them; drop frozen and linear for a run"

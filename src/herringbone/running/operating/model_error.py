@@ -12,7 +12,6 @@ from herringbone.core.declaring.units import R_MIN
 from herringbone.core.wording import percent
 from herringbone.cosim.structure.system import System
 from herringbone.running.operating.at_point import prepared_at
-from herringbone.running.operating.lean import lean_of
 from herringbone.running.operating.questions import USUAL, questions_of
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Scene
@@ -73,7 +72,7 @@ def model_errors(
     theirs = _found(solver.solve(point), "the whole model")
     if state is None or state.tolerance > fine:
         given = prepared_at(point, *leaner)
-        own = SteadySolver(given.system, fine, lean=lean_of(given.scene))
+        own = SteadySolver(given.system, fine, lean=given.scene.model.left_out)
         state = _found(own.solve(point), "the leaner model")
     own_questions = questions_of(state.structure.core, asks)  # of its own housing's data
     errors = {

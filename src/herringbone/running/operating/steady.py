@@ -15,7 +15,7 @@ from herringbone.running.operating.asked_tolerance import asked_tolerance, toler
 from herringbone.running.operating.at_point import NOTHING, prepared_at
 from herringbone.running.operating.by_hand import said_by_hand
 from herringbone.running.operating.commanded import own_point, with_known_values
-from herringbone.running.operating.lean import changed_by, lean_notes, lean_of
+from herringbone.running.operating.lean import changed_by, lean_notes
 from herringbone.running.operating.settled import LONGEST, settled
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Prepared, Wishes
@@ -114,7 +114,7 @@ def _solver_of(
 ) -> tuple[SteadySolver, tuple[str, ...]]:
     """With the model that the scene leaves, and what is to be said of it."""
     least = asked_tolerance(found.scene) if tolerance is None else tolerance
-    prepared = SteadySolver(found.system, least, lean=lean_of(found.scene), solver=solver)
+    prepared = SteadySolver(found.system, least, lean=found.scene.model.left_out, solver=solver)
     own = own_point(found.system) if found.scene.model else (None, None)
     said = lean_notes(found.scene.model, changed_by(wishes), point.speed, point.torque, own)
     return prepared, (*found.notes, *tolerance_notes(found.scene, tolerance), *said)

@@ -9,8 +9,8 @@ from herringbone.analysis.leaner.question import Apart, Question, apart, lines_o
 from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
-from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.core import ParameterError
+from herringbone.core.lean import WHOLE, Lean
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.scenes.asking import LEAST, SHARE
 from herringbone.studies.planning.rung import Worst, worst

@@ -10,7 +10,7 @@ from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure
-from herringbone.analysis.twin.condensed.lean import Lean
+from herringbone.core.lean import Lean
 from herringbone.scenes.asking import SHARE
 from herringbone.studies.planning.rung import STEADY, Rung, Worst, worst
 
@@ -36,7 +36,7 @@ class Ladder:
         self._cuts = cuts_of(solver.structure)
         self._pairs = modes_of(solver.structure)
         names = [name for pair in self._pairs for name in pair]
-        names += [name for cut in self._cuts for name in cut.lean.held]
+        names += [name for cut in self._cuts for name in cut.lean.hold]
         names = list(dict.fromkeys(names))
         self._estimates = [Estimates(state, questions, names) for state in states]
         self.modes = self._by_influence()
@@ -59,7 +59,7 @@ class Ladder:
         leaner = dict[Structure, Structure]()
         for state, estimates in zip(self._states, self._estimates, strict=True):
             if lean.only_held:
-                by_name = estimates.held(lean.held)
+                by_name = estimates.held(lean.hold)
             else:
                 own = state.structure  # most points share one
                 if own not in leaner:
@@ -128,5 +128,5 @@ class Ladder:
 
 def frozen_where_they_bend(lean: Lean, states: Sequence[SteadyState]) -> bool:
     """True if a model freezes laws of a part that bend in one of the motions of the whole one."""
-    own = {*lean.frozen, *lean.linear}
+    own = set(lean.straight)
     return bool(own) and any(own & set(state.bends) for state in states)

@@ -7,17 +7,16 @@ from pathlib import Path
 
 from herringbone.analysis.leaner.question import Question
 from herringbone.analysis.steady.solver import SteadySolver
-from herringbone.analysis.twin.condensed.lean import WHOLE
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core import ParameterError
 from herringbone.core.facts import Facts
+from herringbone.core.lean import WHOLE
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.core.wording import option
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_scene, system_and_folder, with_options
 from herringbone.running.operating.at_point import prepared_at
-from herringbone.running.operating.lean import lean_of
 from herringbone.running.operating.questions import questions_of
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
@@ -130,7 +129,7 @@ def plan(
         questions = questions_of(solver.structure.core, asking.asks)
         fine = solver.leaner(WHOLE, tolerance_for(questions, 1.0 / FINER))
         rungs, certifier, said = steady_rungs(
-            fine, questions, asking, lean_of(asking), for_fmu=for_fmu, estimated=estimated
+            fine, questions, asking, asking.model.left_out, for_fmu=for_fmu, estimated=estimated
         )
         tolerance, charted = certifier.tolerance, certifier
         at_it = replace(asking.operating, solver_tolerance=tolerance)
@@ -178,11 +177,7 @@ def _made(
     error = None if choice.measured is None else choice.measured.largest
     model = Model()
     if choice.lean:
-        lean = choice.lean
-        model = Model(
-            lean.held, lean.one_way, error, at.speed, at.torque, lean.frozen, lean.linear,
-            lean.harmonics,
-        )  # fmt: skip
+        model = Model(**vars(choice.lean), error=error, speed=at.speed, torque=at.torque)
     return Plan(
         system.name, replace(scene, model=model), tuple(questions), tuple(rungs), tolerance,
         time.process_time() - begin, notes,

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from herringbone.analysis.leaner.question import Apart, Question
 from herringbone.analysis.steady.operating_point import Point
-from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
+from herringbone.core.lean import WHOLE, Lean
 
 STEADY, FUSED, COUPLED = "steady state", "fused run", "coupled run"
 """Solvers."""

@@ -6,11 +6,11 @@ from dataclasses import replace
 from herringbone.analysis.leaner.question import Lines, Question, lines_of
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
-from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.analysis.twin.fused.core import Steps, closeness
 from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST
 from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
+from herringbone.core.lean import WHOLE, Lean
 from herringbone.scenes import Scene
 from herringbone.scenes.asking import SHARE
 from herringbone.studies.planning.certified import Certifier
@@ -87,7 +87,7 @@ def steady_rungs(
 
 def _leanest(rungs: Sequence[Rung]) -> list[Rung]:
     """Those that leave out most."""
-    return sorted(rungs, key=lambda rung: -len(rung.lean.held))[:_TRIED]
+    return sorted(rungs, key=lambda rung: -len(rung.lean.hold))[:_TRIED]
 
 
 def _cheapest(certifier: Certifier, rungs: Sequence[Rung]) -> list[Rung]:
@@ -107,7 +107,7 @@ def _cheapest(certifier: Certifier, rungs: Sequence[Rung]) -> list[Rung]:
     costs = certifier.costs([rung.lean for rung in rungs], rounds=1, most=_TRIED)
     least = min(costs)
     order = sorted(
-        range(len(rungs)), key=lambda k: (costs[k] > _ALIKE * least, -len(rungs[k].lean.held))
+        range(len(rungs)), key=lambda k: (costs[k] > _ALIKE * least, -len(rungs[k].lean.hold))
     )
     return [rungs[k] for k in order[:_TRIED]]
 
@@ -130,7 +130,7 @@ def chosen_of(rungs: Sequence[Rung], *, leanest: bool) -> list[Rung]:
     priced = [rung for rung in rungs if rung.cost is not None and rung.solver == STEADY]
     whole = rungs[0]
     if leanest:
-        leaner = max(priced, key=lambda rung: len(rung.lean.held))
+        leaner = max(priced, key=lambda rung: len(rung.lean.hold))
         return [replace(rung, why=_why(rung, leaner, "more is in it")) for rung in rungs]
     cheapest = min(priced, key=lambda rung: rung.cost or 0.0)
     if (cheapest.cost or 0.0) > _WORTH * (whole.cost or 0.0):

@@ -58,8 +58,8 @@ def _said(plan: Plan) -> Iterator[str]:
     if choice.lean:
         lean = choice.lean
         tables = (f"{part}: harmonics above {count}" for part, count in lean.harmonics)
-        parts = (*lean.one_way, *lean.frozen, *lean.linear, *tables)
-        yield f"  left out: {'; '.join((*_short(lean.held), *parts))}"
+        parts = (*lean.one_way, *lean.straight, *tables)
+        yield f"  left out: {'; '.join((*_short(lean.hold), *parts))}"
     yield f"Planning took {plan.seconds:.2g} s of CPU time. {_worth(plan)}"
     yield from (f"note: {note}" for note in plan.notes)
 
@@ -152,7 +152,7 @@ def plan_summary(plan: Plan) -> dict:
 def _rung(rung: Rung) -> dict:
     return {
         "name": rung.name,
-        "held": list(rung.lean.held),
+        "held": list(rung.lean.hold),
         "one_way": list(rung.lean.one_way),
         "frozen": list(rung.lean.frozen),
         "linear": list(rung.lean.linear),

@@ -14,10 +14,11 @@ from herringbone.analysis.leaner.question import Question, apart, lines_of
 from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
-from herringbone.analysis.twin.condensed.lean import Lean, held_states
+from herringbone.analysis.twin.condensed.lean import held_states
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.measured import values_at
 from herringbone.core import StructureError
+from herringbone.core.lean import Lean
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 
@@ -65,13 +66,13 @@ def test_an_estimate_is_what_the_leaner_model_then_differs_by() -> None:
     names = ("axial motion locked", "halves of the gears joined")
     axial, joined = (next(cut.lean for cut in cuts if cut.name == name) for name in names)
     held = [name for pair in modes for name in pair]
-    estimates = Estimates(state, questions, [*held, *axial.held, *joined.held])
+    estimates = Estimates(state, questions, [*held, *axial.hold, *joined.hold])
     alone = estimates.influences([pair[1] for pair in modes])
     ranked = sorted((pair for pair in modes if pair[1] in alone), key=lambda pair: alone[pair[1]])
-    assert len(joined.held) == 4  # two twists and their rates
+    assert len(joined.hold) == 4  # two twists and their rates
     for names in (
-        axial.held,
-        joined.held,
+        axial.hold,
+        joined.hold,
         *([n for p in ranked[:k] for n in p] for k in (20, 30, 40)),
     ):
         expected, measured = estimates.held(names), _measured(Lean(tuple(names)))
@@ -158,7 +159,7 @@ def test_a_drive_of_prescribed_speed_has_that_of_each_operating_point() -> None:
         found = solver.leaner(lean).solve(whole.point, whole)
         assert found.converged
         assert abs(found.speed) == pytest.approx(abs(whole.point.speed), rel=1e-9)
-        expected = Estimates(whole, questions, lean.held).held(lean.held)
+        expected = Estimates(whole, questions, lean.hold).held(lean.hold)
         for question in questions:
             error = apart(question, lines_of(found, question), lines_of(whole, question)).error
             assert 1e-3 < error < 1e-2  # the rotor's own swing

@@ -7,65 +7,18 @@ steady states are found, as those of the whole one.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 
 import numpy as np
 
 from herringbone.analysis.twin.condensed.equations import Equations, laws_of
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import Instance, StructureError
+from herringbone.core.lean import Lean
 from herringbone.core.names import shown
 
 _NONE = 1e-9
 """Of the singular values of what drives a part: no direction of its own."""
-
-
-@dataclass(frozen=True)
-class Lean:
-    """What a leaner model leaves out.
-
-    Attributes:
-        held: states that keep their start values, `instance.state`.
-        one_way: parts that are driven but not felt.
-        frozen: parts whose laws are straight lines about their mean deflections, of steady states.
-        linear: parts whose laws have mean slopes besides.
-        harmonics: parts, and how many harmonics of their laws' tables are kept.
-    """
-
-    held: tuple[str, ...] = ()
-    one_way: tuple[str, ...] = ()
-    frozen: tuple[str, ...] = ()
-    linear: tuple[str, ...] = ()
-    harmonics: tuple[tuple[str, int], ...] = ()
-
-    def __bool__(self) -> bool:
-        return bool(self.held) or not self.only_held
-
-    @property
-    def only_held(self) -> bool:
-        """True if all that is left out are motions."""
-        return not (self.one_way or self.frozen or self.linear or self.harmonics)
-
-    def __ge__(self, other: "Lean") -> bool:
-        """True if it leaves out at least what the other one does."""
-        kept = dict(self.harmonics)
-        return all(
-            set(getattr(self, name)) >= set(getattr(other, name))
-            for name in ("held", "one_way", "frozen", "linear")
-        ) and all(kept.get(part, count + 1) <= count for part, count in other.harmonics)
-
-    def __or__(self, other: "Lean") -> "Lean":
-        """What either of both leaves out."""
-        return Lean(
-            *(
-                tuple(dict.fromkeys((*getattr(self, field.name), *getattr(other, field.name))))
-                for field in fields(self)
-            )
-        )
-
-
-WHOLE = Lean()
-"""A model that leaves out nothing."""
 
 
 def state_names(twin: Twin) -> tuple[str, ...]:
@@ -117,14 +70,14 @@ def held_states(twin: Twin, lean: Lean) -> list[int]:
         StructureError: one is not there, or grows with every turn.
     """
     names = {name: k for k, name in enumerate(state_names(twin))}
-    for name in lean.held:
+    for name in lean.hold:
         if name not in names:
             raise StructureError(
                 f"{twin.system.name}: model: it has no state {shown(name, 60)} that could be held"
             )
         if names[name] in twin.turning:
             raise StructureError(f"{name}: model: an angle that turns cannot be held")
-    return [names[name] for name in lean.held]
+    return [names[name] for name in lean.hold]
 
 
 def leaner(twin: Twin, equations: Equations, lean: Lean, seen: Sequence[int]) -> Equations:

@@ -9,7 +9,7 @@ import numpy as np
 
 from herringbone.analysis.accuracy.apart import outputs_in
 from herringbone.analysis.twin.condensed.equations import Equations, take_apart
-from herringbone.analysis.twin.condensed.lean import WHOLE, Lean, leaner, with_harmonics
+from herringbone.analysis.twin.condensed.lean import leaner, with_harmonics
 from herringbone.analysis.twin.condensed.recorded.outputs import (
     Outputs,
     affine_places,
@@ -21,6 +21,7 @@ from herringbone.analysis.twin.condensed.system import Condensed, condensed
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError, Variable
 from herringbone.core.caching.remembered import Remembered
+from herringbone.core.lean import WHOLE, Lean
 from herringbone.core.places.part_path import in_groups
 from herringbone.core.places.wrong_column import meant_columns
 from herringbone.cosim.structure.system import System
