@@ -117,7 +117,7 @@ class SteadySolver:
             orbit, notes = orbit._replace(converged=False), (other_flank(structure, wrong),)
         before = near._replace(before=None) if near else None
         return SteadyState(
-            structure, point, motion, orbit, errors, self.tolerance, notes, by, before, wrong
+            structure, point, motion, orbit, errors, self.tolerance, notes, by, before
         )
 
     def _at(self, point: Point) -> Structure:

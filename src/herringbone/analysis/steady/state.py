@@ -44,7 +44,6 @@ class SteadyState(PeriodicMotion):
         by: the march or the shot by which it was found, None: by harmonic balance; or what tells
             that there is none that could be found.
         before: the neighbour from which it was found.
-        on_other_flank: gear pairs that were prepared for the flank that does not carry.
     """
 
     structure: Structure
@@ -56,7 +55,6 @@ class SteadyState(PeriodicMotion):
     notes: tuple[str, ...] = ()
     by: Settled | Shot | Irregular | None = None
     before: Neighbour | None = None
-    on_other_flank: tuple[str, ...] = ()
 
     def noted(self, notes: Sequence[str]) -> "SteadyState":
         """The same state with further notes."""
