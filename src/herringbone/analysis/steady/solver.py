@@ -1,10 +1,11 @@
 """Steady states of one system at many operating points."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from copy import copy
 
 import numpy as np
 
+from herringbone.analysis.steady.branches import branch_of
 from herringbone.analysis.steady.flanks import on_other_flank, prepared_flanks
 from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.searching.guess import Guess, Neighbour, motion_at
@@ -119,6 +120,24 @@ class SteadySolver:
         return SteadyState(
             structure, point, motion, orbit, errors, self.tolerance, notes, by, before
         )
+
+    def branch(self, state: SteadyState, speed: float) -> Iterator[SteadyState]:
+        """Steady states along the branch of one, over the speed, around folds.
+
+        Args:
+            state: where it begins, at a speed that was asked for; all have its harmonics.
+            speed: where it ends [rad/s].
+
+        Yields:
+            States behind it; the last one is at or beyond that speed, or, of a branch that comes
+            back, beyond that of the first. Where it turns back, the next one has the note `FOLD`.
+
+        Raises:
+            ParameterError: the state was not found, the speed is not one that it can go to, or a
+                period has too many unknowns.
+            BranchLostError: no next state is found.
+        """
+        return branch_of(state, speed, self.tolerance)
 
     def _at(self, point: Point) -> Structure:
         """The structure with the values of a point."""

@@ -18,6 +18,7 @@ NO_ROTATION = (
     "beyond what the drive gives"
 )
 NO_LOAD = "torque = 0 N m: nothing holds the teeth together, which drift apart; ask for a load"
+FOLD = "fold: the branch turns back between the state before and this one"
 GROWS = "unstable: small deviations grow, a run would leave this motion"
 NO_SHOT = (
     f"shooting comes to no periodic motion from marches of up to {SETTLING:g} s; teeth that rattle "
