@@ -13,6 +13,8 @@ from herringbone.core.errors import StructureError
 LONGEST = 64
 _IDENTIFIER = re.compile(rf"[A-Za-z_][A-Za-z0-9_]{{0,{LONGEST - 1}}}", re.ASCII)
 _FOREIGN = re.compile(r"[^A-Za-z0-9_]", re.ASCII)
+_NO_FILE = re.compile(r'[\\:*?"<>|\x00-\x1f]')
+"""What a file cannot be called somewhere, besides a slash."""
 _SHOWN = 40
 _NEAR = 3
 """Names that a wrong one may mean, at most."""
@@ -92,6 +94,11 @@ def identifier_for(text: str, taken: Container[str] = ()) -> str:
         number += 1
         found = f"{name[: LONGEST - len(str(number)) - 1]}_{number}"
     return found
+
+
+def file_name_for(text: str) -> str:
+    """Name of a file for a name of any form: a slash, as units have it, is `_per_`."""
+    return _NO_FILE.sub("_", text.replace("/", "_per_"))
 
 
 WILD = frozenset("*?")

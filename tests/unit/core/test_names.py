@@ -4,7 +4,14 @@ import pytest
 
 from herringbone.core import StructureError
 from herringbone.core.declaring.declaration import Declaration
-from herringbone.core.names import LONGEST, check_name, check_path, identifier_for, is_identifier
+from herringbone.core.names import (
+    LONGEST,
+    check_name,
+    check_path,
+    file_name_for,
+    identifier_for,
+    is_identifier,
+)
 from herringbone.cosim.structure.system import PartSpec, System
 
 
@@ -60,6 +67,20 @@ def test_a_path_is_refused_by_its_segment():
 def test_mapped(name, taken, found):
     assert identifier_for(name, taken) == found
     assert is_identifier(found)
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("outputs_in_rad/s", "outputs_in_rad_per_s"),
+        ("N/m", "N_per_m"),
+        ("N*m", "N_m"),
+        ("gear.der(s)[1]", "gear.der(s)[1]"),
+        ("C:\\a\n", "C__a_"),
+    ],
+)
+def test_names_of_files(name, found):
+    assert file_name_for(name) == found
 
 
 def test_python_objects_are_checked_too():

@@ -5,12 +5,19 @@ import itertools
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 from herringbone.analysis.figures.sensitivity import sensitivities
+from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
 from herringbone.core import ParameterError
+from herringbone.plotting.studies import pictures
 from herringbone.plotting.studies.levels import levels, peaks
 from herringbone.plotting.studies.maps import is_map, level_map
-from herringbone.plotting.studies.pictures import _uncertain, write_study_pictures
+from herringbone.plotting.studies.pictures import (
+    _uncertain,
+    write_steady_pictures,
+    write_study_pictures,
+)
 from herringbone.plotting.studies.sensitivities import band, changes, tornado
 from herringbone.plotting.studies.steady_state import short_names
 from herringbone.plotting.studies.table import Points
@@ -208,6 +215,22 @@ def test_sensitivities_of_a_table_make_a_band_and_a_tornado_plot(table, tmp_path
     assert write_study_pictures(none, UNITS, tmp_path).missing == [
         "no tornado.force.png: no point has a level and sensitivities of it"
     ]
+
+
+def test_pictures_of_a_group_called_by_its_unit(table, tmp_path, monkeypatch):
+    """A slash made a folder of the name, which is not there."""
+    of, group = "outputs_in_rad/s", "outputs_in_rad_per_s"
+    called = {c: c.replace("force.", f"{of}.") for c in table}
+    units = {called.get(c, c): unit for c, unit in UNITS.items()}
+    one = shipped(table, torque=200.0, zeta=0.02).rename(columns=called)
+    found = write_study_pictures(one, units, tmp_path)
+    assert {f"waterfall.{group}.png", f"tornado.{group}.png"} <= {f.name for f in found.files}
+    none = one.assign(**{f"{of}.rms": np.nan, f"{of}.sensitivity.{ZETA}": np.nan})
+    missing = write_study_pictures(none, units, tmp_path).missing
+    assert f"no tornado.{group}.png: no point has a level and sensitivities of it" in missing
+    monkeypatch.setattr(pictures, "steady_picture", lambda _: Figure())
+    files = write_steady_pictures(None, {of: {ZETA: Sensitivity(0.02, -1.0, -1.0)}}, tmp_path)
+    assert [file.name for file in files] == ["steady.png", f"tornado.{group}.png"]
 
 
 def test_sensitivities_are_those_at_the_base_of_what_is_not_varied():

@@ -19,6 +19,7 @@ from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
 from herringbone.core import ParameterError
+from herringbone.core.names import file_name_for
 from herringbone.plotting.studies.levels import Band, levels
 from herringbone.plotting.studies.maps import is_map, level_map
 from herringbone.plotting.studies.sensitivities import PARAMETER, band, tornado
@@ -68,12 +69,14 @@ def write_study_pictures(
     points = Points(table, units, title)
     bands, tornados, missing = _uncertain(points, spread)
     wanted: dict[str, Callable[[], Figure]] = {"levels": partial(levels, points, bands=bands)}
-    wanted |= {f"tornado.{group}": partial(tornado, *given) for group, given in tornados.items()}
+    wanted |= {
+        _named("tornado", group): partial(tornado, *given) for group, given in tornados.items()
+    }
     if is_map(points):
         wanted["map"] = partial(level_map, points)
     if SPEED in points.numbers:
         for group in points.groups:
-            wanted[f"waterfall.{group}"] = partial(waterfall, points, group)
+            wanted[_named("waterfall", group)] = partial(waterfall, points, group)
     files = []
     for name, draw in wanted.items():
         file = Path(folder) / f"{name}.png"
@@ -108,8 +111,13 @@ def write_steady_pictures(
     for group, own in found.items():
         rows = [(name, each.relative, spread) for name, each in own.items()]
         frame = pd.DataFrame(rows, columns=[PARAMETER, "sensitivity", "spread"])
-        figures[f"tornado.{group}"] = tornado(frame, f"{group}.rms")
+        figures[_named("tornado", group)] = tornado(frame, f"{group}.rms")
     return [_written(figure, folder / f"{name}.png") for name, figure in figures.items()]
+
+
+def _named(kind: str, group: str) -> str:
+    """Name of the picture of a group, which may be called by its unit."""
+    return f"{kind}.{file_name_for(group)}"
 
 
 def _written(figure: Figure, file: Path) -> Path:
@@ -142,7 +150,7 @@ def _uncertain(
             varied = sensitivities(table, level, own, along)
             alone = found[~found[PARAMETER].isin(own)]
             found = pd.concat([part for part in (alone, varied) if len(part)] or [varied])
-        none = f"no tornado.{group}.png: no point has a level and sensitivities of it"
+        none = f"no {_named('tornado', group)}.png: no point has a level and sensitivities of it"
         if not len(found) or not middle[level].notna().any():
             missing.append(none)
             continue
