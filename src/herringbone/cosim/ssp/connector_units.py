@@ -5,27 +5,13 @@ exchange other values, and the file is refused.
 """
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
 from herringbone.core.names import shown
 from herringbone.core.part import PartVariable
-from herringbone.core.reading.numbers import number, whole
 from herringbone.cosim.ssp.content import Content
 from herringbone.cosim.ssp.format import NAMESPACES
-
-
-class _Unit(NamedTuple):
-    """A unit's name, and factor, offset and base-unit exponents; None if they are not known."""
-
-    name: str
-    definition: tuple | None
-
-    def same(self, other: "_Unit") -> bool:
-        """True if both have one name or one definition."""
-        return self.name == other.name or (
-            self.definition is not None and self.definition == other.definition
-        )
+from herringbone.cosim.ssp.units import WITHOUT, Unit, definitions, unit_of
 
 
 class ConnectorUnits:
@@ -35,28 +21,18 @@ class ConnectorUnits:
         root: of the system structure, which defines the units.
         content: of the file, for messages.
 
+    Attributes:
+        untold: values that were given in units, of variables for which nothing declares one.
+
     Raises:
         StructureError: a definition has a value that is no number.
     """
 
     def __init__(self, root: Element, content: Content) -> None:
         self._content = content
-        self._definitions = {
-            unit.get("name", ""): self._definition(unit, base)
-            for unit in root.iterfind("ssd:Units/ssc:Unit", NAMESPACES)
-            for base in unit.iterfind("ssc:BaseUnit", NAMESPACES)
-        }
-        self._alone: dict[str, _Unit] = {}
-
-    def _definition(self, unit: Element, base: Element) -> tuple:
-        """As `PartVariable.dimension` has it."""
-        given = dict(base.attrib)
-        try:
-            factor, offset = number(given.pop("factor", "1")), number(given.pop("offset", "0"))
-            powers = tuple(sorted((n, whole(text)) for n, text in given.items() if whole(text)))
-        except ValueError as error:
-            raise self._content.refusal(f"unit {shown(unit.get('name', ''))}: {error}") from None
-        return factor, offset, powers
+        self._definitions = definitions(root, "ssd:Units", content)
+        self._alone: dict[str, Unit] = {}
+        self.untold: list[str] = []
 
     def take(self, component: Element, part: str, variables: Mapping[str, PartVariable]) -> None:
         """Note the units of a component's connectors whose variables have none; check the others.
@@ -74,15 +50,36 @@ class ConnectorUnits:
             declared = next(filter(None, (child.get("unit") for child in connector)), None)
             if declared is None or (variable := variables.get(name)) is None:
                 continue
-            unit, own = _Unit(declared, self._definitions.get(declared)), _own(variable)
+            unit, own = Unit(declared, self._definitions.get(declared)), unit_of(variable)
             if own is None:
                 self._alone[f"{part}.{name}"] = unit
             elif not unit.same(own):
                 raise self._content.refusal(
-                    f"component '{component.get('name')}', connector '{name}': unit "
-                    f"{shown(unit.name)} is not {shown(own.name)} of the FMU's variable; give the "
-                    "connector that unit"
+                    f"component '{component.get('name')}', connector '{name}': "
+                    f"{unit.differs(own)} of the FMU's variable; give the connector that unit"
                 )
+
+    def check_value(
+        self, path: str, given: Unit, variable: PartVariable | None, where: str
+    ) -> None:
+        """Check the unit of a value, which is taken in that of its variable, or else connector.
+
+        Args:
+            path: `part.variable` that it sets.
+            given: its unit.
+            variable: that it sets; None: it is not known.
+            where: it stands, for messages.
+
+        Raises:
+            StructureError: it is another unit.
+        """
+        own, of = unit_of(variable), "of the variable"
+        if own is None:
+            own, of = self._alone.get(path), "of the connector"
+        if own is not None and not given.same(own):
+            raise self._content.refusal(f"{where}: {given.differs(own)} {of}; convert it")
+        if own is None and variable is not None and given.name not in WITHOUT:
+            self.untold.append(f"{path} [{given.name}]")
 
     def check(
         self, connections: Iterable[tuple[object, object]], variables: Mapping[str, PartVariable]
@@ -98,7 +95,7 @@ class ConnectorUnits:
         """
         for ends in connections:
             first, second = (
-                self._alone.get(str(end)) or _own(variables.get(str(end))) for end in ends
+                self._alone.get(str(end)) or unit_of(variables.get(str(end))) for end in ends
             )
             alone = any(str(end) in self._alone for end in ends)
             if alone and first and second and not first.same(second):
@@ -107,8 +104,3 @@ class ConnectorUnits:
                     f"{shown(second.name)}, and not both FMUs declare theirs, by which values "
                     "would be converted; declare them there, or connect equal units"
                 )
-
-
-def _own(variable: PartVariable | None) -> _Unit | None:
-    """The unit that an FMU declares."""
-    return _Unit(variable.unit, variable.dimension) if variable and variable.unit else None

@@ -4,12 +4,12 @@ from collections.abc import Callable, Iterator, Mapping
 from xml.etree.ElementTree import Element
 
 from herringbone.core import StructureError
-from herringbone.core.part import PartVariable
 from herringbone.core.reading.numbers import number, whole
 from herringbone.core.reading.texts import read_bytes
 from herringbone.core.reading.xml import LARGEST_XML, parse_xml
 from herringbone.cosim.ssp.content import Content
 from herringbone.cosim.ssp.format import NAMESPACES, PARAMETER_TYPE, local_name, qualified
+from herringbone.cosim.ssp.units import Unit, definitions
 
 _BOOLEANS = {"true": 1, "1": 1, "false": 0, "0": 0}
 """Words of xs:boolean."""
@@ -43,8 +43,10 @@ _TYPES: Mapping[str, Callable[[str], float | str]] = {
 """Values of SSP 1.0, and those that 2.0 has besides."""
 
 
-def parameters(element: Element, where: str, content: Content) -> Iterator[Element]:
-    """Parameters of all bindings of an element; later ones win.
+def parameters(
+    element: Element, where: str, content: Content
+) -> Iterator[tuple[Element, Unit | None]]:
+    """Parameters of all bindings of an element, and the units of their values; later ones win.
 
     Args:
         element: a system or a component.
@@ -52,11 +54,14 @@ def parameters(element: Element, where: str, content: Content) -> Iterator[Eleme
         content: of the file.
 
     Raises:
-        StructureError: a binding uses what this master does not know.
+        StructureError: a binding uses what this master does not know, or a unit is no number.
     """
     for binding in element.iterfind("ssd:ParameterBindings/ssd:ParameterBinding", NAMESPACES):
         found = _parameter_set(binding, where, content)
-        yield from found.iterfind("ssv:Parameters/ssv:Parameter", NAMESPACES)
+        defined = definitions(found, "ssv:Units", content)
+        for parameter in found.iterfind("ssv:Parameters/ssv:Parameter", NAMESPACES):
+            unit = "" if (typed := _typed(parameter)) is None else typed.get("unit")
+            yield parameter, Unit(unit, defined.get(unit)) if unit else None
 
 
 def _parameter_set(binding: Element, where: str, content: Content) -> Element:
@@ -80,31 +85,28 @@ def _parameter_set(binding: Element, where: str, content: Content) -> Element:
     return root
 
 
-def value_of(
-    parameter: Element, variable: PartVariable | None, where: str, content: Content
-) -> float | str:
-    """Value of a parameter, in the unit of its variable.
+def value_of(parameter: Element, where: str, content: Content) -> float | str:
+    """Value of a parameter.
 
     Args:
         parameter: see `parameters`.
-        variable: that it sets; None: it is not known.
         where: it stands, for messages.
         content: of the file.
 
     Raises:
-        StructureError: of another type, or in another unit.
+        StructureError: of another type.
     """
-    typed = next((c for c in parameter if local_name(c) != "Annotations"), None)
+    typed = _typed(parameter)
     kind = "nothing" if typed is None else local_name(typed)
     if typed is None or kind not in _TYPES:
         raise content.refusal(f"{where}: a value of type {kind} is not supported")
-    unit = typed.get("unit")
-    if unit and variable and variable.unit and unit != variable.unit:
-        raise content.refusal(
-            f"{where}: unit '{unit}' is not '{variable.unit}' of the variable; convert it"
-        )
     text = typed.get("value", "")
     try:
         return _TYPES[kind](text)
     except ValueError:
         raise content.refusal(f"{where}: '{text}' is no {kind}") from None
+
+
+def _typed(parameter: Element) -> Element | None:
+    """What has the value."""
+    return next((c for c in parameter if local_name(c) != "Annotations"), None)

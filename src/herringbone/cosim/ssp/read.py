@@ -11,7 +11,14 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from herringbone.core import FmuError, StructureError
-from herringbone.core.names import check_name, check_path, identifier_for, is_identifier, shown
+from herringbone.core.names import (
+    check_name,
+    check_path,
+    first_of,
+    identifier_for,
+    is_identifier,
+    shown,
+)
 from herringbone.core.part import PartVariable
 from herringbone.core.places.part_path import PartPath
 from herringbone.core.reading.numbers import number
@@ -27,7 +34,6 @@ from herringbone.cosim.ssp.format import (
     PARTS_ANNOTATION,
     SUPPRESS_CONVERSION,
     local_name,
-    qualified,
     read_structure,
     suppresses_conversion,
     unpack,
@@ -35,6 +41,9 @@ from herringbone.cosim.ssp.format import (
 from herringbone.cosim.ssp.parameters import parameters, value_of
 from herringbone.cosim.ssp.ports import Outside, ports_of
 from herringbone.cosim.structure.system import PartSpec, System
+
+_TOLD = 3
+"""Values that a note names."""
 
 
 def read_ssp(file: str | Path) -> System:
@@ -99,11 +108,15 @@ class _Reader(Content):
         parts: list[PartSpec] = []
         variables: dict[str, PartVariable] = {}
         for child in element.iterfind("ssd:Elements/*", NAMESPACES):
-            part, part_variables = self.part(child)
+            part, part_variables = self.part(child, units)
             parts.append(part)
-            units.take(child, part.name, part_variables)
-            variables |= {f"{part.name}.{n}": v for n, v in part_variables.items()}
-        values = self.values(element, "the system", variables)
+            variables |= part_variables
+        values = self.values(element, "the system", variables, units)
+        if units.untold:
+            self.notes.append(
+                f"{self.file}: neither FMU nor connector declares a unit for "
+                f"{first_of(units.untold, _TOLD)}: the values are taken as they stand"
+            )
         ends = list(self.connections(element))
         units.check(ends, variables)
         ports = self.ports(ends)
@@ -150,7 +163,10 @@ class _Reader(Content):
         part, dot, variable = path.partition(".")
         return f"{self.names.get(part, part)}{dot}{variable}"
 
-    def part(self, element: Element) -> tuple[PartSpec, Mapping[str, PartVariable]]:
+    def part(
+        self, element: Element, units: ConnectorUnits
+    ) -> tuple[PartSpec, Mapping[str, PartVariable]]:
+        """A component, and its variables by `part.variable`."""
         kind, name = local_name(element), element.get("name", "")
         if kind == "SignalDictionaryReference":
             raise self.refusal(
@@ -167,8 +183,11 @@ class _Reader(Content):
             variables = read_variables(read_fmu(fmu))
         except FmuError as error:
             raise FmuError(f"{self.file}: component '{name}': {error}") from error
-        values = self.values(element, f"component '{name}'", variables)
-        return PartSpec(PartPath(self.names[name]), fmu=fmu, values=values), variables
+        path = PartPath(self.names[name])
+        units.take(element, path, variables)
+        variables = {f"{path}.{n}": v for n, v in variables.items()}
+        values = self.values(element, f"component '{name}'", variables, units, f"{path}.")
+        return PartSpec(path, fmu=fmu, values=values), variables
 
     def connections(self, system: Element) -> Iterator[tuple[str | Outside, str | Outside]]:
         for element in system.iterfind("ssd:Connections/ssd:Connection", NAMESPACES):
@@ -204,16 +223,22 @@ class _Reader(Content):
         return ports
 
     def values(
-        self, element: Element, where: str, variables: Mapping[str, PartVariable]
+        self,
+        element: Element,
+        where: str,
+        variables: Mapping[str, PartVariable],
+        units: ConnectorUnits,
+        part: str = "",
     ) -> dict[str, float | str]:
-        """Values of all parameter bindings of an element; later ones win."""
+        """Values of all bindings of an element; `part.` stands in front of a component's names."""
         found: dict[str, float | str] = {}
-        for parameter in parameters(element, where, self):
+        for parameter, unit in parameters(element, where, self):
             name = parameter.get("name", "")
             where_here = f"{where}, parameter '{name}'"
-            if element.tag == qualified("ssd:System"):
-                name = self.path_here(name)
-            found[name] = value_of(parameter, variables.get(name), where_here, self)
+            path = f"{part}{name}" if part else self.path_here(name)
+            if unit is not None:
+                units.check_value(path, unit, variables.get(path), where_here)
+            found[path.removeprefix(part)] = value_of(parameter, where_here, self)
         return found
 
     def channels(self, system: Element) -> dict[str, tuple[str, ...]]:

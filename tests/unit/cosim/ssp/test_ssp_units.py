@@ -23,6 +23,12 @@ UNITS = (
     '<ssc:Unit name="r/min"><ssc:BaseUnit rad="1" s="-1" factor="0.1047" m="0"/></ssc:Unit>'
     '<ssc:Unit name="rad/s"><ssc:BaseUnit rad="1" s="-1"/></ssc:Unit></ssd:Units>'
 )
+VALUE = (
+    "<ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>"
+    '<ssv:ParameterSet version="1.0" name="p"><ssv:Parameters><ssv:Parameter name="{}">'
+    '<ssv:Real value="7" unit="{}"/></ssv:Parameter></ssv:Parameters>{}</ssv:ParameterSet>'
+    "</ssd:ParameterValues></ssd:ParameterBinding></ssd:ParameterBindings>"
+)
 
 
 @pytest.fixture
@@ -61,6 +67,68 @@ def test_units_of_connectors_that_differ_are_refused(with_units):
 def test_equal_units_of_connectors_are_taken(with_units, units):
     """By name or by definition; an end without any is not known."""
     assert read_ssp(with_units(*units)).connections == (("a.y", "b.s"),)
+
+
+def with_value(folder, component, name, unit, units=""):
+    """The folder, with a value 7 of a component in a unit."""
+    file = folder / SSD
+    text, given = file.read_text(encoding="utf-8"), VALUE.format(name, unit, units)
+    place = text.index("</ssd:Component>", text.index(f'name="{component}"'))
+    file.write_text(f"{text[:place]}{given}{text[place:]}", encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("connector", "unit", "said"),
+    [
+        ("rpm", "rad/s", r"component 'b', parameter 's': unit 'rad/s' is not 'rpm' of the conn"),
+        ("rpm", "r/min", r"unit 'r/min' is not 'rpm' of the connector; convert it"),
+    ],
+)
+def test_a_value_in_another_unit_than_its_connector(with_units, connector, unit, said):
+    """The FMU declares none; 7 rad/s had arrived as 7 rpm. A name alone does not say `rpm`."""
+    with pytest.raises(StructureError, match=said):
+        read_ssp(with_value(with_units("", connector), "b", "s", unit))
+
+
+def test_a_value_in_the_unit_of_its_connector(with_units):
+    """By name, or by the definition of the parameter set."""
+    defined = UNITS.replace("ssd:Units", "ssv:Units")
+    for unit, units in (("rpm", ""), ("r/min", defined)):
+        found = read_ssp(with_value(with_units("", "rpm"), "b", "s", unit, units))
+        assert found.part("b").values["s"] == 7.0
+        assert not found.notes
+
+
+def test_a_value_in_a_unit_that_nothing_declares(with_units):
+    """It is taken as it stands, which a note says; `1` is no unit."""
+    (note,) = read_ssp(with_value(with_units("", ""), "b", "s", "mm")).notes
+    assert note.endswith(
+        "neither FMU nor connector declares a unit for b.s [mm]: the values are taken as they stand"
+    )
+    assert not read_ssp(with_value(with_units("", ""), "b", "s", "1")).notes
+
+
+@pytest.mark.parametrize(
+    ("base", "same"),
+    [('m="1"', True), ('m="1" factor="1.0001"', True), ('m="1" factor="2"', False)],
+)
+def test_a_unit_that_a_parameter_set_defines_otherwise(edited, base, same):
+    """One name with a factor of 2 is another unit; the factor may be rounded, to 1e-3."""
+    units = f'<ssv:Units><ssc:Unit name="m"><ssc:BaseUnit {base}/></ssc:Unit></ssv:Units>'
+    folder = with_value(edited("UTF-8", "UTF-8"), "spring", "s", "m", units)
+    if same:
+        assert read_ssp(folder).part("spring").values["s"] == 7.0
+        return
+    with pytest.raises(StructureError, match="unit 'm' is defined otherwise than 'm' of the var"):
+        read_ssp(folder)
+
+
+def test_a_connector_whose_unit_is_defined_otherwise(edited):
+    """kN under the name that the FMU has for N: another master would convert."""
+    folder = edited('kg="1" m="1" s="-2"', 'kg="1" m="1" s="-2" factor="1000"')
+    with pytest.raises(StructureError, match="connector 'f': unit 'N' is defined otherwise than"):
+        read_ssp(folder)
 
 
 def test_definition_of_a_unit_is_of_numbers(edited):
