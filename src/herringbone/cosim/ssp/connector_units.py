@@ -5,13 +5,28 @@ exchange other values, and the file is refused.
 """
 
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
-from herringbone.core.names import shown
 from herringbone.core.part import PartVariable
 from herringbone.cosim.ssp.content import Content
 from herringbone.cosim.ssp.format import NAMESPACES
-from herringbone.cosim.ssp.units import WITHOUT, Unit, definitions, unit_of
+from herringbone.cosim.ssp.units import WITHOUT, Unit, declared_unit, definitions, unit_of
+
+
+class Ends(NamedTuple):
+    """A connection of two components.
+
+    Attributes:
+        first, second: `part.variable`.
+        near_first, near_second: units of the connectors of nested systems between, "" without: the
+            one that is nearest to each end.
+    """
+
+    first: str
+    second: str
+    near_first: str
+    near_second: str
 
 
 class ConnectorUnits:
@@ -47,10 +62,10 @@ class ConnectorUnits:
         """
         for connector in component.iterfind("ssd:Connectors/ssd:Connector", NAMESPACES):
             name = connector.get("name", "")
-            declared = next(filter(None, (child.get("unit") for child in connector)), None)
-            if declared is None or (variable := variables.get(name)) is None:
+            unit = self._named(declared_unit(connector))
+            if unit is None or (variable := variables.get(name)) is None:
                 continue
-            unit, own = Unit(declared, self._definitions.get(declared)), unit_of(variable)
+            own = unit_of(variable)
             if own is None:
                 self._alone[f"{part}.{name}"] = unit
             elif not unit.same(own):
@@ -81,26 +96,28 @@ class ConnectorUnits:
         if own is None and variable is not None and given.name not in WITHOUT:
             self.untold.append(f"{path} [{given.name}]")
 
-    def check(
-        self, connections: Iterable[tuple[object, object]], variables: Mapping[str, PartVariable]
-    ) -> None:
+    def check(self, connections: Iterable[Ends], variables: Mapping[str, PartVariable]) -> None:
         """Check the connections at which an FMU declares no unit, but a connector does.
 
         Args:
-            connections: two `part.variable` each; others are passed over.
+            connections: of components.
             variables: of all parts, by `part.variable`.
 
         Raises:
             StructureError: the unit at the other end is another one.
         """
-        for ends in connections:
-            first, second = (
-                self._alone.get(str(end)) or unit_of(variables.get(str(end))) for end in ends
-            )
-            alone = any(str(end) in self._alone for end in ends)
-            if alone and first and second and not first.same(second):
+        for first, second, *between in connections:
+            own = [unit_of(variables.get(end)) for end in (first, second)]
+            units = [
+                unit or self._alone.get(end) or self._named(name)
+                for unit, end, name in zip(own, (first, second), between, strict=True)
+            ]
+            if None in own and units[0] and units[1] and not units[0].same(units[1]):
                 raise self._content.refusal(
-                    f"connection '{ends[0]}' - '{ends[1]}': units differ, {shown(first.name)} and "
-                    f"{shown(second.name)}, and not both FMUs declare theirs, by which values "
-                    "would be converted; declare them there, or connect equal units"
+                    f"connection '{first}' - '{second}': {units[0].differs(units[1])}, and not "
+                    "both FMUs declare theirs, by which values would be converted; declare them "
+                    "there, or connect equal units"
                 )
+
+    def _named(self, name: str) -> Unit | None:
+        return Unit(name, self._definitions.get(name)) if name else None

@@ -1,6 +1,6 @@
 """Nested systems of an SSP 1.0 file as one flat system, which the reader knows."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from xml.etree.ElementTree import Element, SubElement
 
@@ -14,7 +14,10 @@ from herringbone.cosim.ssp.format import (
     qualified,
     suppresses_conversion,
 )
+from herringbone.cosim.ssp.units import declared_unit
 
+START_UNIT, END_UNIT = "hb:startUnit", "hb:endUnit"
+"""Attributes of a connection: unit of the connector on the way that is nearest to this end."""
 Refusal = Callable[[str], StructureError]
 _SEPARATOR = "__"
 _ENDS = ("start", "end")
@@ -26,7 +29,7 @@ def flattened(system: Element, refusal: Refusal) -> Element:
     """The system with all components in it; the system itself if it contains no other.
 
     Components are called `outer__inner`; an annotation says their paths. Connections are followed
-    through the connectors of the systems between.
+    through the connectors of the systems between, whose units they keep.
 
     Raises:
         StructureError: a nested system has values, a connector of it has two sources, or a
@@ -84,49 +87,70 @@ def _links(system: Element, path: str) -> Iterator[Element]:
 
 def _connections(system: Element, components: set[str], refusal: Refusal) -> Iterator[Element]:
     """Connections of components and of the whole system, followed through connectors of others."""
-    links = list(_links(system, ""))
-    arriving = _arriving(links, components, _nested(system, ""), refusal)
+    links, nested = list(_links(system, "")), dict(_nested(system, ""))
+    arriving = _arriving(links, components, nested, refusal)
+    units = {
+        (name, connector.get("name")): declared_unit(connector)
+        for name, inner in nested.items()
+        for connector in inner.iterfind("ssd:Connectors/ssd:Connector", NAMESPACES)
+    }
+    ends = {*components, _OUTSIDE}
     for link in links:
-        if link.get("endElement") not in {*components, _OUTSIDE}:
-            continue
-        found, seen = link, 1
-        while (start := found.get("startElement")) not in {*components, _OUTSIDE}:
-            before = arriving.get((str(start), found.get("startConnector", "")))
-            if before is None or seen > len(links):
-                raise refusal(
-                    f"connection '{link.get('endElement')}.{link.get('endConnector')}': no output "
-                    "of a component arrives there"
-                )
-            link.extend(child for child in before)
-            if suppresses_conversion(before):
-                link.set(SUPPRESS_CONVERSION, "true")
-            found, seen = before, seen + 1
-        for key in ("startElement", "startConnector"):
-            link.set(key, found.get(key, ""))
-        for end in _ENDS:
-            if link.get(f"{end}Element") == _OUTSIDE:
-                del link.attrib[f"{end}Element"]
-        yield link
+        if link.get("endElement") in ends:
+            chain = [link]
+            while chain[-1].get("startElement") not in ends:
+                before = arriving.get(_start(chain[-1]))
+                if before is None or len(chain) > len(links):
+                    raise refusal(
+                        f"connection '{link.get('endElement')}.{link.get('endConnector')}': no "
+                        "output of a component arrives there"
+                    )
+                chain.append(before)
+            yield _joined(chain, units)
 
 
-def _nested(system: Element, path: str) -> Iterator[str]:
-    """Flat names of all nested systems."""
+def _joined(chain: Sequence[Element], units: Mapping[tuple[str, str], str]) -> Element:
+    """Connections from an end back to what arrives there as one, with the units on the way."""
+    link, *others = chain
+    between = [unit for each in chain[:-1] if (unit := units.get(_start(each)))]
+    for before in others:
+        link.extend(child for child in before)
+        if suppresses_conversion(before):
+            link.set(SUPPRESS_CONVERSION, "true")
+    for key in ("startElement", "startConnector"):
+        link.set(key, chain[-1].get(key, ""))
+    for end in _ENDS:
+        if link.get(f"{end}Element") == _OUTSIDE:
+            del link.attrib[f"{end}Element"]
+    if between:
+        link.set(START_UNIT, between[-1])
+        link.set(END_UNIT, between[0])
+    return link
+
+
+def _start(link: Element) -> tuple[str, str]:
+    """Element and connector at which a connection starts."""
+    return link.get("startElement", ""), link.get("startConnector", "")
+
+
+def _nested(system: Element, path: str) -> Iterator[tuple[str, Element]]:
+    """All nested systems, with flat names."""
     for child in system.iterfind("ssd:Elements/ssd:System", NAMESPACES):
         inner = f"{path}.{child.get('name', '')}" if path else child.get("name", "")
-        yield _flat(inner)
+        yield _flat(inner), child
         yield from _nested(child, inner)
 
 
 def _arriving(
-    links: Iterable[Element], components: set[str], nested: Iterable[str], refusal: Refusal
+    links: Iterable[Element], components: set[str], nested: Container[str], refusal: Refusal
 ) -> dict[tuple[str, str], Element]:
     """What arrives at each connector of a nested system; components are checked with their FMUs."""
-    systems, found = set(nested), dict[tuple[str, str], Element]()
+    found: dict[tuple[str, str], Element] = {}
     for link in links:
         element, connector = end = link.get("endElement", ""), link.get("endConnector", "")
         if element in {*components, _OUTSIDE}:
             continue
-        if element not in systems:
+        if element not in nested:
             raise refusal(f"connection '{element}.{connector}': there is no component '{element}'")
         if (other := found.setdefault(end, link)) is not link:
             first, second = (

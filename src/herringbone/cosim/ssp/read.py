@@ -24,9 +24,9 @@ from herringbone.core.places.part_path import PartPath
 from herringbone.core.reading.numbers import number
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.variables import read_variables
-from herringbone.cosim.ssp.connector_units import ConnectorUnits
+from herringbone.cosim.ssp.connector_units import ConnectorUnits, Ends
 from herringbone.cosim.ssp.content import Content
-from herringbone.cosim.ssp.flatten import flattened
+from herringbone.cosim.ssp.flatten import END_UNIT, START_UNIT, flattened
 from herringbone.cosim.ssp.format import (
     CHANNELS_ANNOTATION,
     FMU_TYPE,
@@ -117,15 +117,15 @@ class _Reader(Content):
                 f"{self.file}: neither FMU nor connector declares a unit for "
                 f"{first_of(units.untold, _TOLD)}: the values are taken as they stand"
             )
-        ends = list(self.connections(element))
-        units.check(ends, variables)
-        ports = self.ports(ends)
+        found = list(self.connections(element))
+        inner = [each for each in found if isinstance(each, Ends)]
+        units.check(inner, variables)
         system = System(
             name,
             element.get("description", ""),
             tuple(parts),
-            tuple((a, b) for a, b in ends if isinstance(a, str) and isinstance(b, str)),
-            ports=ports,
+            tuple((each.first, each.second) for each in inner),
+            ports=self.ports([each for each in found if isinstance(each, Outside)]),
             channels=self.channels(element),
             notes=tuple(self.notes),
         )
@@ -189,7 +189,7 @@ class _Reader(Content):
         values = self.values(element, f"component '{name}'", variables, units, f"{path}.")
         return PartSpec(path, fmu=fmu, values=values), variables
 
-    def connections(self, system: Element) -> Iterator[tuple[str | Outside, str | Outside]]:
+    def connections(self, system: Element) -> Iterator[Ends | Outside]:
         for element in system.iterfind("ssd:Connections/ssd:Connection", NAMESPACES):
             ends = [
                 (element.get(f"{end}Element"), element.get(f"{end}Connector"))
@@ -203,20 +203,21 @@ class _Reader(Content):
                     raise self.refusal(f"{where}: {local_name(child)} is not supported")
             if suppresses_conversion(element):
                 raise self.refusal(f"{where}: {SUPPRESS_CONVERSION} is not supported")
-            first, second = (
-                self.path_here(f"{part}.{name}") if part is not None else Outside(str(name), "")
-                for part, name in ends
-            )
-            yield first, second
+            (first, output), (second, into) = ends
+            if first is None:
+                yield Outside(str(output), self.path_here(f"{second}.{into}"))
+            elif second is None:
+                yield Outside(str(into), self.path_here(f"{first}.{output}"))
+            else:
+                yield Ends(
+                    self.path_here(f"{first}.{output}"),
+                    self.path_here(f"{second}.{into}"),
+                    element.get(START_UNIT, ""),
+                    element.get(END_UNIT, ""),
+                )
 
-    def ports(self, ends: Iterable[tuple[str | Outside, str | Outside]]) -> dict[str, str]:
+    def ports(self, outside: Iterable[Outside]) -> dict[str, str]:
         """The system's ports; a note names its connectors that are none."""
-        outside = []
-        for first, second in ends:
-            if isinstance(first, Outside):
-                outside.append(Outside(first.connector, str(second)))
-            elif isinstance(second, Outside):
-                outside.append(Outside(second.connector, first))
         ports, others = ports_of(outside)
         if others:
             self.notes.append(f"{self.file}: connectors of no port are open: {', '.join(others)}")

@@ -56,6 +56,11 @@ def definitions(element: Element, where: str, content: Content) -> Mapping[str, 
     }
 
 
+def declared_unit(connector: Element) -> str:
+    """Name of the unit that a connector declares; "" without."""
+    return next(filter(None, (child.get("unit") for child in connector)), "")
+
+
 def unit_of(variable: PartVariable | None) -> Unit | None:
     """The unit that an FMU declares."""
     return Unit(variable.unit, variable.dimension) if variable and variable.unit else None

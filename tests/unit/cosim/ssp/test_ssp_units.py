@@ -29,6 +29,15 @@ VALUE = (
     '<ssv:Real value="7" unit="{}"/></ssv:Parameter></ssv:Parameters>{}</ssv:ParameterSet>'
     "</ssd:ParameterValues></ssd:ParameterBinding></ssd:ParameterBindings>"
 )
+NESTED = (
+    '<ssd:System name="N"><ssd:Connectors><ssd:Connector name="i" kind="input">'
+    '<ssc:Real unit="{}"/></ssd:Connector></ssd:Connectors><ssd:Elements>'
+)
+NESTED_END = (
+    '</ssd:Elements><ssd:Connections><ssd:Connection startConnector="i" endElement="b" '
+    'endConnector="s"/></ssd:Connections></ssd:System>'
+)
+INTO = 'endElement="N" endConnector="i" />'
 
 
 @pytest.fixture
@@ -58,7 +67,7 @@ def with_units(tmp_path):
 
 def test_units_of_connectors_that_differ_are_refused(with_units):
     """FMUs without units: another master would convert, this one has nothing to convert by."""
-    said = r"connection 'a\.y' - 'b\.s': units differ, 'rpm' and 'rad/s'"
+    said = r"connection 'a\.y' - 'b\.s': unit 'rpm' is not 'rad/s', and not both"
     with pytest.raises(StructureError, match=said):
         read_ssp(with_units("rpm", "rad/s"))
 
@@ -67,6 +76,37 @@ def test_units_of_connectors_that_differ_are_refused(with_units):
 def test_equal_units_of_connectors_are_taken(with_units, units):
     """By name or by definition; an end without any is not known."""
     assert read_ssp(with_units(*units)).connections == (("a.y", "b.s"),)
+
+
+@pytest.mark.parametrize(
+    ("units", "said"),
+    [
+        (("rpm", "rad/s", "rpm"), None),
+        (("rpm", "", "rpm"), None),
+        (("", "rpm", "rpm"), None),
+        (("rpm", "rad/s", ""), "unit 'rpm' is not 'rad/s', and not both FMUs"),
+        (("", "rad/s", "rpm"), "unit 'rad/s' is not 'rpm', and not both FMUs"),
+    ],
+)
+def test_units_of_connectors_between(with_units, units, said):
+    """A nested system around the end of the wire: its connector stands for an end without unit.
+
+    Between ends of one unit it does not matter: there and back.
+    """
+    output, between, into = units
+    folder = with_units(output, into)
+    file = folder / SSD
+    text = file.read_text(encoding="utf-8")
+    place = text.index('<ssd:Component name="b"')
+    end = text.index("</ssd:Component>", place) + len("</ssd:Component>")
+    inner = f"{NESTED.format(between)}{text[place:end]}{NESTED_END}"
+    text = f"{text[:place]}{inner}{text[end:]}"
+    file.write_text(text.replace('endElement="b" endConnector="s" />', INTO), encoding="utf-8")
+    if said is None:
+        assert read_ssp(folder).connections == (("a.y", "N.b.s"),)
+        return
+    with pytest.raises(StructureError, match=said):
+        read_ssp(folder)
 
 
 def with_value(folder, component, name, unit, units=""):
