@@ -1,6 +1,6 @@
 """Nested systems of an SSP 1.0 file as one flat system, which the reader knows."""
 
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from copy import deepcopy
 from xml.etree.ElementTree import Element, SubElement
 
@@ -25,11 +25,12 @@ _OUTSIDE = ""
 """What stands for the whole system, whose connectors lead outside."""
 
 
-def flattened(system: Element, refusal: Refusal) -> Element:
-    """The system with all components in it; the system itself if it contains no other.
+def flattened(system: Element, refusal: Refusal) -> tuple[Element, list[str]]:
+    """The system with all components in it, the system itself if it contains no other; open inputs.
 
     Components are called `outer__inner`; an annotation says their paths. Connections are followed
-    through the connectors of the systems between, whose units they keep.
+    through the connectors of the systems between, whose units they keep. Inputs of these at which
+    nothing arrives are open: what they lead to keeps its start values.
 
     Raises:
         StructureError: a nested system has values, a connector of it has two sources, or a
@@ -37,7 +38,7 @@ def flattened(system: Element, refusal: Refusal) -> Element:
     """
     elements = system.find("ssd:Elements", NAMESPACES)
     if elements is None or not any(local_name(child) == "System" for child in elements):
-        return system
+        return system, []
     flat = Element(system.tag, dict(system.attrib))
     for child in system:
         if local_name(child) not in {"Elements", "Connections"}:
@@ -49,10 +50,11 @@ def flattened(system: Element, refusal: Refusal) -> Element:
         if path != component.get("name"):
             paths[component.get("name", "")] = path
     connections = SubElement(flat, qualified("ssd:Connections"))
-    for connection in _connections(system, {c.get("name", "") for c in inside}, refusal):
+    names, still = {c.get("name", "") for c in inside}, dict[str, None]()
+    for connection in _connections(system, names, refusal, still):
         connections.append(connection)
     _annotate(flat, paths)
-    return flat
+    return flat, list(still)
 
 
 def _components(system: Element, path: str, refusal: Refusal) -> Iterator[tuple[str, Element]]:
@@ -85,34 +87,50 @@ def _links(system: Element, path: str) -> Iterator[Element]:
         yield from _links(child, f"{path}.{name}" if path else name)
 
 
-def _connections(system: Element, components: set[str], refusal: Refusal) -> Iterator[Element]:
-    """Connections of components and of the whole system, followed through connectors of others."""
+def _connections(
+    system: Element, components: set[str], refusal: Refusal, still: dict[str, None]
+) -> Iterator[Element]:
+    """Connections of components and of the whole system, followed through connectors of others.
+
+    What leads on from an input of a nested system at which nothing arrives is left out, and the
+    input noted in `still`.
+    """
     links, nested = list(_links(system, "")), dict(_nested(system, ""))
-    arriving = _arriving(links, components, nested, refusal)
-    units = {
-        (name, connector.get("name")): declared_unit(connector)
+    connectors = {
+        (name, connector.get("name", "")): connector
         for name, inner in nested.items()
         for connector in inner.iterfind("ssd:Connectors/ssd:Connector", NAMESPACES)
     }
     ends = {*components, _OUTSIDE}
     for link in links:
-        if link.get("endElement") in ends:
-            chain = [link]
-            while chain[-1].get("startElement") not in ends:
-                before = arriving.get(_start(chain[-1]))
-                if before is None or len(chain) > len(links):
-                    raise refusal(
-                        f"connection '{link.get('endElement')}.{link.get('endConnector')}': no "
-                        "output of a component arrives there"
-                    )
-                chain.append(before)
-            yield _joined(chain, units)
+        if (element := link.get("startElement", "")) not in ends and element not in nested:
+            raise _missing(element, link.get("startConnector"), refusal)
+    arriving = _arriving(links, ends, nested, connectors, refusal)
+    for link in links:
+        if link.get("endElement") not in ends:
+            continue
+        chain = [link]
+        while chain[-1].get("startElement") not in ends and len(chain) <= len(links):
+            if (before := arriving.get(_start(chain[-1]))) is None:
+                break
+            chain.append(before)
+        last = _start(chain[-1])
+        if last[0] in ends:
+            yield _joined(chain, connectors)
+        elif last in arriving or last not in connectors or connectors[last].get("kind") == "output":
+            raise refusal(
+                f"connection '{link.get('endElement')}.{link.get('endConnector')}': no output of a "
+                "component arrives there"
+            )
+        else:
+            still[".".join(last)] = None
 
 
-def _joined(chain: Sequence[Element], units: Mapping[tuple[str, str], str]) -> Element:
+def _joined(chain: Sequence[Element], connectors: Mapping[tuple[str, str], Element]) -> Element:
     """Connections from an end back to what arrives there as one, with the units on the way."""
     link, *others = chain
-    between = [unit for each in chain[:-1] if (unit := units.get(_start(each)))]
+    passed = [connectors[at] for each in chain[:-1] if (at := _start(each)) in connectors]
+    between = [unit for connector in passed if (unit := declared_unit(connector))]
     for before in others:
         link.extend(child for child in before)
         if suppresses_conversion(before):
@@ -142,24 +160,33 @@ def _nested(system: Element, path: str) -> Iterator[tuple[str, Element]]:
 
 
 def _arriving(
-    links: Iterable[Element], components: set[str], nested: Container[str], refusal: Refusal
+    links: Sequence[Element],
+    ends: Container[str],
+    nested: Container[str],
+    connectors: Container[tuple[str, str]],
+    refusal: Refusal,
 ) -> dict[tuple[str, str], Element]:
     """What arrives at each connector of a nested system; components are checked with their FMUs."""
     found: dict[tuple[str, str], Element] = {}
+    used = {_start(link) for link in links}
     for link in links:
         element, connector = end = link.get("endElement", ""), link.get("endConnector", "")
-        if element in {*components, _OUTSIDE}:
+        if element in ends:
             continue
         if element not in nested:
-            raise refusal(f"connection '{element}.{connector}': there is no component '{element}'")
+            raise _missing(element, connector, refusal)
+        if end not in connectors and end not in used:
+            raise refusal(f"nested system '{element}' has no connector '{connector}'; connect one")
         if (other := found.setdefault(end, link)) is not link:
-            first, second = (
-                f"'{x.get('startElement')}.{x.get('startConnector')}'" for x in (other, link)
-            )
+            first, second = (f"'{'.'.join(_start(x))}'" for x in (other, link))
             raise refusal(
                 f"connector '{element}.{connector}' has two sources: {first} and {second}"
             )
     return found
+
+
+def _missing(element: str, connector: str | None, refusal: Refusal) -> StructureError:
+    return refusal(f"connection '{element}.{connector}': there is no component '{element}'")
 
 
 def _annotate(system: Element, paths: dict[str, str]) -> None:
@@ -172,6 +199,10 @@ def _annotate(system: Element, paths: dict[str, str]) -> None:
         SubElement(parts, qualified("hb:Part"), name=name, path=path)
 
 
+def flat_path(names: Sequence[str]) -> str:
+    """Names of nested systems and a component as one."""
+    return _SEPARATOR.join(names)
+
+
 def _flat(path: str) -> str:
-    """Path as one name."""
-    return path.replace(".", _SEPARATOR)
+    return flat_path(path.split("."))

@@ -26,7 +26,7 @@ from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.cosim.ssp.connector_units import ConnectorUnits, Ends
 from herringbone.cosim.ssp.content import Content
-from herringbone.cosim.ssp.flatten import END_UNIT, START_UNIT, flattened
+from herringbone.cosim.ssp.flatten import END_UNIT, START_UNIT, flat_path, flattened
 from herringbone.cosim.ssp.format import (
     CHANNELS_ANNOTATION,
     FMU_TYPE,
@@ -101,7 +101,12 @@ class _Reader(Content):
             raise self.refusal("it contains no system")
         if element.find("ssd:SignalDictionaries", NAMESPACES) is not None:
             raise self.refusal("signal dictionaries are not supported; connect components directly")
-        element = flattened(element, self.refusal)
+        element, still = flattened(element, self.refusal)
+        if still:
+            self.notes.append(
+                f"{self.file}: nothing arrives at {', '.join(still)}: what these inputs of nested "
+                "systems lead to keeps its start values"
+            )
         units = ConnectorUnits(root, self)
         name = self.renamed(element.get("name") or root.get("name") or self.file.stem, "system")
         self.name_components(element)
@@ -159,9 +164,12 @@ class _Reader(Content):
                     yield part.get("name", ""), path
 
     def path_here(self, path: str) -> str:
-        """A path `component.variable` of the file with the component's identifier."""
-        part, dot, variable = path.partition(".")
-        return f"{self.names.get(part, part)}{dot}{variable}"
+        """A path `component.variable` of the file, systems in front, with the identifiers here."""
+        part, *rest = path.split(".")
+        for count in range(len(rest)):
+            if (found := self.names.get(flat_path([part, *rest[:count]]))) is not None:
+                return ".".join([found, *rest[count:]])
+        return path
 
     def part(
         self, element: Element, units: ConnectorUnits

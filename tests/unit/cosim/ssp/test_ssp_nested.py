@@ -90,13 +90,34 @@ def test_nested_systems_are_read_again(system, fmus, tmp_path):
         assert found.part(part.name).values == part.values
 
 
+OUT_OF_BOX = (
+    '<ssd:Connection startElement="right" startConnector="port.s" endConnector="right__port.s" />'
+)
 INTO_BOX = 'endElement="box" endConnector="right__f" />'
+FROM_FAR = '<ssd:Connection startElement="far" startConnector="away__force" '
 FROM_Z = '<ssd:Connection startElement="z" startConnector="port.s" '
+TOP = "<ssd:Elements>\n      <ssd:Component"
+VALUE = (
+    "<ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>"
+    '<ssv:ParameterSet version="1.0" name="p"><ssv:Parameters><ssv:Parameter '
+    'name="a box.right.mass"><ssv:Real value="2.5"/></ssv:Parameter></ssv:Parameters>'
+    "</ssv:ParameterSet></ssd:ParameterValues></ssd:ParameterBinding></ssd:ParameterBindings>"
+)
 REFUSED = {
-    "no source": (
+    "no such connector": (
         'endConnector="right__f"',
         'endConnector="other"',
-        "'box__right.f': no output of a component arrives",
+        "nested system 'box' has no connector 'other'",
+    ),
+    "no source": (
+        OUT_OF_BOX,
+        "",
+        r"connection 'far__away\.s': no output of a component arrives there",
+    ),
+    "no such start inside": (
+        'startElement="right" startConnector="port.s"',
+        'startElement="zz" startConnector="y"',
+        "connection 'box__zz.y': there is no component 'box__zz'",
     ),
     "no such end": (
         INTO_BOX,
@@ -116,16 +137,44 @@ REFUSED = {
 }
 
 
+@pytest.fixture
+def changed(system, fmus, tmp_path):
+    """The nested file unpacked, with texts replaced."""
+
+    def change(*texts):
+        file, folder = tmp_path / "nested.ssp", tmp_path / "unpacked"
+        write_ssp(nested(system), fmus, file, step=1e-5, t_end=0.25, nested=True)
+        with zipfile.ZipFile(file) as archive:
+            archive.extractall(folder)
+        text = (folder / SSD).read_text(encoding="utf-8")
+        for old, new in texts:
+            assert old in text
+            text = text.replace(old, new)
+        (folder / SSD).write_text(text, encoding="utf-8")
+        return folder
+
+    return change
+
+
 @pytest.mark.parametrize("case", REFUSED)
-def test_connections_that_would_be_lost_are_refused(system, fmus, tmp_path, case):
+def test_connections_that_would_be_lost_are_refused(changed, case):
     """Each would leave a connection out, or one of its properties, without a word."""
     old, new, message = REFUSED[case]
-    file, folder = tmp_path / "nested.ssp", tmp_path / "unpacked"
-    write_ssp(nested(system), fmus, file, step=1e-5, t_end=0.25, nested=True)
-    with zipfile.ZipFile(file) as archive:
-        archive.extractall(folder)
-    text = (folder / SSD).read_text(encoding="utf-8")
-    assert old in text
-    (folder / SSD).write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(StructureError, match=message):
-        read_ssp(folder)
+        read_ssp(changed((old, new)))
+
+
+def test_an_open_input_of_a_nested_system_keeps_its_start_value(changed, system):
+    """As one of a component does; a note says so."""
+    found = read_ssp(changed((f"{FROM_FAR}{INTO_BOX}", "")))
+    (note,) = found.notes
+    assert "nothing arrives at box.right__f: what these inputs of nested systems lead to" in note
+    whole = set(nested(system).connections)
+    assert set(found.connections) == whole - {("far.away.force", "box.right.f")}
+
+
+def test_a_value_of_the_whole_for_a_part_in_a_system_of_any_name(changed):
+    """`a box` is no identifier, and no component."""
+    texts = ('name="box"', 'name="a box"'), ('Element="box"', 'Element="a box"'), (TOP, VALUE + TOP)
+    found = read_ssp(changed(*texts))
+    assert found.part("a_box__right").values["mass"] == 2.5
