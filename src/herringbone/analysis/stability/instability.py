@@ -24,8 +24,8 @@ _SHORTER, _ALIKE = 8.0, 0.1
 _SPEED = "rad/s"
 _SLOW, _UNLIKE = 1.0, 0.05
 """Speed [rad/s] that is rest, and share of a speed by which another one is alike."""
-_UNSEEN = 3.0
-"""Powers of e that a motion may grow by in a run that still looks sound."""
+_FEW = 3.0
+"""Powers of e up to which growth is told in percent."""
 
 
 def warn_if_unstable(
@@ -134,6 +134,6 @@ def _in_time(growth: Growth, step: float, duration: float) -> str:
     if not np.isfinite(duration):
         return text
     folds = rate * duration
-    if folds < _UNSEEN:
-        return f"{text}: by {percent(np.expm1(folds))} within the run, which does not show it"
+    if folds < _FEW:
+        return f"{text}: by {percent(np.expm1(folds))} within the run"
     return f"{text}: {folds:.3g} powers of e within the run"

@@ -45,7 +45,7 @@ def as_unstable(result: Result, found: Outgrown) -> Result:
 
 
 def with_doubt(result: Result, system: System) -> Result:
-    """The result with a line where nothing tells whether the coupling is stable.
+    """The result with a line where nothing tells that the coupling is stable, or much against it.
 
     Args:
         result: of a run with fixed steps, with its error by other steps if that was looked for.
@@ -53,19 +53,21 @@ def with_doubt(result: Result, system: System) -> Result:
     """
     info, known = result.info, result.verification
     coupled = bool(system.foreign_parts and system.connections)
-    if not coupled or info.energy or info.steps or not result.outcome.ended_well:
+    if not coupled or info.steps or not result.outcome.ended_well:
         return result
-    unwatched = "the energy of the coupling is not watched, as no element was seen to damp"
-    if known is None or not known.known:
+    seen = "the energy of the coupling is not watched, as no element was seen to damp, and"
+    if info.energy is not None:
+        seen = "no energy was seen to grow by the coupling, but"
+    elif known is None or not known.known:
         return result.noted(
-            f"{unwatched}, and the error by other steps is not known: nothing tells whether the "
-            "coupling is stable"
+            f"{seen} the error by other steps is not known: nothing tells whether the coupling is "
+            "stable"
         )
-    if known.error <= _WRONG:
+    if known is None or not known.error > _WRONG:
         return result
     return _without_settling(result).noted(
-        f"{unwatched}, and the error by other steps is {percent(known.error)}: the coupling may be "
-        f"unstable, or the motion chaotic; compare with a step below {info.communication_step:g} s"
+        f"{seen} the error by other steps is {percent(known.error)}: the coupling may be unstable, "
+        f"or the motion chaotic; compare with a step below {info.communication_step:g} s"
     )
 
 

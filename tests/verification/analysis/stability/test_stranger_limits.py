@@ -6,6 +6,7 @@ from a commit's hash. Growth per step is compared, too: it is that of the amplif
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -299,7 +300,7 @@ def _limit(system, algorithm):
 
 
 def test_a_run_warns_of_an_unstable_step(kinds, tmp_path):
-    """Of growth that the run does not show, too: by its rate, and by what it makes of the run."""
+    """By the rate, and by what it makes of the run: little, which may not show, in percent."""
     system = make_system(tmp_path, kinds, "an element alone")
     limit = _limit(system, Jacobi(0))
     options = {
@@ -315,7 +316,11 @@ def test_a_run_warns_of_an_unstable_step(kinds, tmp_path):
     assert not warnings(BELOW * limit, 3.0)[1]
     quiet, said = warnings(1.05 * limit, 3.0)
     assert quiet.outcome.completed
-    assert "within the run, which does not show it" in said[0]
+    rate, grown = map(
+        float,
+        re.search(r"exp\((.*) t/s\): by (.*) % within the run(?:, with |;)", said[0]).groups(),
+    )
+    assert grown == pytest.approx(100.0 * math.expm1(3.0 * rate), rel=0.02)
     _, said = warnings(ABOVE * limit, 1000.0)
     assert "powers of e within the run" in said[0]
 

@@ -3,12 +3,19 @@
 Two masses of 1 kg, beyond 5 mm of play a spring of 4e4 N/m between them: sqrt(2 k / m) = 283 rad/s.
 """
 
+from dataclasses import replace
+
 import pytest
 from support.foreign.kinds import build_kinds
 from support.foreign.strangers import write_system
 
 import herringbone as hb
+from herringbone.analysis.figures.settling import NOT_SETTLED
 from herringbone.core import OutcomeKind
+from herringbone.core.energy_report import EnergyReport, Verdict
+from herringbone.cosim.structure.system_file import read_system
+from herringbone.result.verification import Verification
+from herringbone.running.steps.grown import with_doubt
 
 VALUES = {"one.k": 100.0, "two.k": 1000.0, "one.ko": 4e4, "one.gap": 5e-3, "one.v0": 0.5}
 OMEGA = 283.0
@@ -54,3 +61,17 @@ def test_a_line_where_nothing_tells(system):
     found = run(system, "jacobi:order=2", 0.2 / OMEGA, probe=False)
     (line,) = (note for note in found.info.notes if "is not watched" in note)
     assert line.endswith("nothing tells whether the coupling is stable")
+
+
+def test_a_line_where_the_error_is_that_of_whole_signals(system):
+    """Whether the energy is watched or not: 974 % says more than an energy that looks fine."""
+    found = run(system, "li:degree=3", 0.2 / OMEGA, probe=False)
+    fine = EnergyReport(Verdict.FINE, None, None, 0.0, 0.1)
+    unsettled = replace(found.info, notes=(f"{NOT_SETTLED}: use a longer t_end",), energy=fine)
+    for error, told in ((0.99, False), (9.74, True)):
+        known = Verification({"outputs": error}, "one.fo", error, 1e-3, "by half the step")
+        notes = with_doubt(
+            replace(found, info=unsettled, verification=known), read_system(system)
+        ).info.notes
+        assert any("error by other steps is 974 %: the coupling may be" in n for n in notes) is told
+        assert any(note.startswith(NOT_SETTLED) for note in notes) is not told
