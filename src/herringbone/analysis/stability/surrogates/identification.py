@@ -10,6 +10,7 @@ below pi, and they must not have died out within one.
 """
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -25,6 +26,8 @@ _ROWS, _COLUMNS = 420, 260
 """Size of a Hankel matrix that is large enough for so many states."""
 _FEWEST, _LONGEST = 6, 40
 """Block rows and columns."""
+_LOST = 1e-6
+"""Share of a matrix that its logarithm may lose, or have imaginary."""
 _GONE, _TURNED = 1e-5, 3.0
 """Eigenvalues of a step that have no usable logarithm: smaller ones, and larger angles [rad]."""
 
@@ -175,12 +178,9 @@ def in_continuous_time(
         return LinearModel(step.a, step.b, step.c, step.d, tuple(given), tuple(rates))
     if np.any(np.abs(values) < _GONE) or np.any(np.abs(np.angle(values)) > _TURNED):
         return None
-    a = np.asarray(logm(step.a)) / h
-    if not np.isfinite(a).all() or np.abs(a.imag).max(initial=0.0) > 1e-6 * np.abs(a).max(
-        initial=1.0
-    ):
+    a = _rates_of(step.a, h)
+    if a is None:
         return None
-    a = np.ascontiguousarray(a.real)
     _, whole, slope = _integrals(a, h)
     c = np.linalg.solve(step.a.T, step.c.T).T
     d, b = step.d - c @ step.b, np.linalg.solve(whole, step.b)
@@ -192,6 +192,18 @@ def in_continuous_time(
         else:
             b[:, rate] += h * b[:, k] - moved
     return LinearModel(a, b, c, d, tuple(given), tuple(rates))
+
+
+def _rates_of(step: np.ndarray, h: float) -> np.ndarray | None:
+    """The real matrix a (n, n) with exp(a h) = step; None if none is found."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # of what is checked here
+        a = np.asarray(logm(step)) / h
+        if not np.isfinite(a).all() or np.abs(a.imag).max() > _LOST * np.abs(a).max(initial=1.0):
+            return None
+        again = expm(h * a.real)
+    met = np.abs(again - step).max() <= _LOST * np.abs(step).max()
+    return np.ascontiguousarray(a.real) if met else None
 
 
 def _answers(
