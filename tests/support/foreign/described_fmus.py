@@ -33,9 +33,11 @@ ELEMENT = """
 
 def make_fmu(file, variables, fmi_version="2.0", newton='kg="1" m="1" s="-2"'):
     """An FMU of which only the description is ever read."""
-    identifier = file.stem
+    identifier, third = file.stem, fmi_version.startswith("3.")
+    token = "instantiationToken" if third else "guid"
+    platform = fmpy.platform_tuple if third else fmpy.platform
     description = f"""<?xml version="1.0" encoding="UTF-8"?>
-<fmiModelDescription fmiVersion="{fmi_version}" modelName="{identifier}" guid="{identifier}">
+<fmiModelDescription fmiVersion="{fmi_version}" modelName="{identifier}" {token}="{identifier}">
 <CoSimulation modelIdentifier="{identifier}"/>
 <UnitDefinitions><Unit name="N"><BaseUnit {newton}/></Unit>
 <Unit name="degC"><BaseUnit K="1" offset="273.15"/></Unit>
@@ -43,6 +45,6 @@ def make_fmu(file, variables, fmi_version="2.0", newton='kg="1" m="1" s="-2"'):
 <ModelVariables>{variables}</ModelVariables><ModelStructure/></fmiModelDescription>"""
     with zipfile.ZipFile(file, "w") as archive:
         archive.writestr(zipfile.ZipInfo("modelDescription.xml"), description)
-        library = f"binaries/{fmpy.platform}/{identifier}{fmpy.sharedLibraryExtension}"
+        library = f"binaries/{platform}/{identifier}{fmpy.sharedLibraryExtension}"
         archive.writestr(zipfile.ZipInfo(library), b"")
     return file

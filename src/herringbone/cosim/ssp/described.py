@@ -9,11 +9,11 @@ from typing import Any
 from fmpy.model_description import ModelDescription
 
 from herringbone.core import ParameterError
-from herringbone.core.part import PartVariable
+from herringbone.core.part import STRUCTURE, PartVariable
 from herringbone.core.places.part_path import PartPath, flat_name
 from herringbone.cosim.fmu.file import is_fmi3, read_fmu
 from herringbone.cosim.fmu.values import as_value
-from herringbone.cosim.fmu.variables import read_variables
+from herringbone.cosim.fmu.variables import read_variables, resized
 from herringbone.cosim.structure.system import Values
 
 _TO_TEXT: dict[str, Callable[[Any], str]] = {
@@ -40,8 +40,20 @@ class DescribedPart:
 
     @cached_property
     def variables(self) -> Mapping[str, PartVariable]:
-        """The FMU's variables as a master sees them."""
-        return read_variables(self.model)
+        """The FMU's variables as a master sees them, arrays of the sizes that the values set.
+
+        Raises:
+            ParameterError: a size is no whole number.
+        """
+        found = read_variables(self.model)
+        for v in self.model.modelVariables:
+            if v.causality == STRUCTURE and v.name in self.values:
+                value = self.values[v.name]
+                size = as_value(
+                    v.type, value, f"{self.name}.{v.name} = {value!r}", found[v.name].items
+                )
+                found = resized(self.model, v.name, int(size))
+        return found
 
     def typed_values(self) -> Iterator[tuple[str, str, str]]:
         """Name, FMI type and text of each value.

@@ -13,6 +13,12 @@ from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.ssp.read import read_ssp, read_stop_time
 from herringbone.cosim.ssp.write import write_ssp
 
+SIZED = """
+<UInt64 name="n" valueReference="0" causality="structuralParameter" variability="fixed" start="2"/>
+<Float64 name="u" valueReference="1" causality="input" start="0 0"><Dimension valueReference="0"/>
+</Float64>
+"""
+
 
 def test_written_system_is_read_again(ssp, system):
     found = read_ssp(ssp)
@@ -115,3 +121,15 @@ def test_value_of_an_fmu_3_is_refused_with_the_remedy(fmi3_fmus):
     said = r"load\.inertia = 0\.1: SSP 1\.0 has no value of type Float64, .* replace this part by"
     with pytest.raises(ParameterError, match=said):
         list(part.typed_values())
+
+
+def test_arrays_have_the_size_that_is_set(tmp_path):
+    """What refuses the part is its FMI version, and not an element that is there."""
+    file = make_fmu(tmp_path / "sized.fmu", SIZED, fmi_version="3.0")
+    assert list(DescribedPart("p", file, {}).variables) == ["n", "u[1]", "u[2]"]
+    part = DescribedPart("p", file, {"n": 3})
+    assert list(part.variables) == ["n", "u[1]", "u[2]", "u[3]"]
+    with pytest.raises(ParameterError, match=r"p\.n = 3: SSP 1\.0 has no value of type UInt64"):
+        list(part.typed_values())
+    with pytest.raises(ParameterError, match=r"p\.n = 'many'"):
+        list(DescribedPart("p", file, {"n": "many"}).variables)
