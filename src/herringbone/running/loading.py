@@ -1,5 +1,6 @@
 """From names to what a run takes: the system, its scene, its parts."""
 
+import logging
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -20,7 +21,11 @@ from herringbone.cosim.fmu.opening import many_of, open_fmu, runs_again
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.starting.approached_part import approached
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.cosim.structure.system_file import find_system, read_system
+from herringbone.cosim.structure.system_file import (
+    find_system,
+    read_system,
+    shipped_before_own,
+)
 from herringbone.cosim.units import in_si_units
 from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
@@ -38,6 +43,7 @@ from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.checks import chosen
 from herringbone.scenes.scene import DEFAULT_SCENE
 
+_LOG = logging.getLogger("herringbone")
 _declared: Remembered[dict[str, PartVariable]] = Remembered(64)
 _compliances: Remembered[float] = Remembered(64)
 _BUILDERS = {"native": build_native_fmus, "python": build_python_fmus}
@@ -53,6 +59,12 @@ def load_system(reference: str | Path) -> tuple[System, Path]:
     check_reference("system", reference, "a name, a folder with system.toml, or an .ssp file")
     if is_ssp(Path(reference)):
         return load_ssp(Path(reference)), Path(reference)
+    if shipped_before_own(reference):
+        _LOG.warning(
+            "%s: the shipped system is taken; the one in the working folder is ./%s",
+            reference,
+            reference,
+        )
     return read_system(reference), find_system(reference)
 
 

@@ -1,12 +1,14 @@
 """Reading systems: what is refused, and how nested systems are flattened."""
 
 import re
+from pathlib import Path
 
 import pytest
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system, short_name
+from herringbone.running.loading import load_system
 
 
 def write(folder, text, name="rig"):
@@ -117,6 +119,23 @@ def test_a_nested_system_is_not_taken_from_the_working_folder(tmp_path, monkeypa
     outer = write(tmp_path, '[parts.box]\nsystem = "inner"', "outer")
     monkeypatch.chdir(tmp_path)
     refused(f"{outer / 'system.toml'}: there is no system 'inner': give one of", outer)
+
+
+@pytest.mark.parametrize(
+    "path", ["./gearbox", "gearbox/", "./gearbox/system.toml", Path("gearbox")]
+)
+def test_a_path_is_no_name_of_a_shipped_system(tmp_path, monkeypatch, caplog, path):
+    """Path makes `gearbox` of `./gearbox`; a name that is both is told."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "gearbox").mkdir()
+    (tmp_path / "gearbox" / "system.toml").write_text(
+        'name = "mine"\n[parts.j]\ncomponent = "rotating_inertia"\n'
+    )
+    assert load_system(path)[0].name == "mine"
+    assert not caplog.records
+    assert load_system("gearbox")[0].name == "gearbox"
+    (record,) = caplog.records
+    assert "the one in the working folder is ./gearbox" in record.getMessage()
 
 
 def test_unknown_port_of_a_nested_system(tmp_path):

@@ -21,6 +21,7 @@ bearing_force = ["bearings.shaft.*.f_?"]
 of = "housing.A.v_z"
 """
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -64,7 +65,7 @@ def find_system(reference: str | Path, outer: Path | None = None) -> Path:
     """Folder of a system, by the name of a shipped one, by its path, or by that of its file.
 
     Args:
-        reference: name or path.
+        reference: name or path; a Path, and what has a separator or is dots alone, is a path.
         outer: folder of the system that names it: paths start there, not in the working folder.
 
     Raises:
@@ -73,7 +74,8 @@ def find_system(reference: str | Path, outer: Path | None = None) -> Path:
     path = Path(reference)
     own = path.parent if path.name == FILE_NAME else path
     shipped = systems_folder() / reference
-    for folder in (outer / own, shipped) if outer else (shipped, own):
+    first = (outer or Path()) / own
+    for folder in (first, shipped) if outer or _is_path(reference) else (shipped, own):
         if is_file(folder / FILE_NAME):
             return folder
     known = sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}"))
@@ -83,6 +85,20 @@ def find_system(reference: str | Path, outer: Path | None = None) -> Path:
         f"{meant(str(reference), known)}give one of {', '.join(known)}, "
         f"a folder with {FILE_NAME}, or an .ssp file"
     )
+
+
+def _is_path(reference: str | Path) -> bool:
+    """True for what can be no name, as `./gearbox`, which Path makes `gearbox` of."""
+    separators = {os.sep, os.altsep or os.sep, "/"}
+    dots = reference in {os.curdir, os.pardir}
+    return isinstance(reference, Path) or dots or any(s in reference for s in separators)
+
+
+def shipped_before_own(reference: str | Path) -> bool:
+    """True if a name is that of a shipped system, which is taken, and of a folder that is here."""
+    if _is_path(reference):
+        return False
+    return all(is_file(place / reference / FILE_NAME) for place in (systems_folder(), Path()))
 
 
 def short_name(reference: str | Path) -> str:
