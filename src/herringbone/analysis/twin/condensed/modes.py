@@ -185,8 +185,8 @@ def _rotations(
 ) -> tuple[np.ndarray, Sequence[int]]:
     """Rigid rotations (n, k), 1 at its own reference and 0 at those of the others; references.
 
-    These are the wanted ones, or such that laws see: where a freewheel lets a shaft slip whose
-    angle no law sees, that angle would begin anywhere, and all that laws see with it.
+    These are the wanted ones, or such that laws see: where a shaft may slip whose angle no law
+    sees, that angle would begin anywhere, and all that laws see with it.
     """
     turning = twin.turning
     if not turning:
