@@ -25,6 +25,7 @@ from herringbone.running.exporting.system_fmu import export_fmu
 RATIO, SPEED = 3.0, 1000.0 * math.pi / 30.0
 """Teeth 81/27; 1000 r/min in rad/s."""
 MOTION = Wanted({"pinion": Given.MOTION})
+GIVEN = Wanted({"pinion": Given.MOTION, "wheel": Given.SPEED})
 BOTH = Wanted({"pinion": Given.SPEED}, exchange=True)
 
 pytestmark = [
@@ -40,7 +41,7 @@ def exported(tmp_path_factory):
 
     @cache
     def export(number, fmi=2):
-        wanted = (Wanted(), MOTION, BOTH)[number]
+        wanted = (Wanted(), MOTION, BOTH, GIVEN)[number]
         return export_fmu("gearbox", folder / f"g{number}_{fmi}.fmu", fmi=fmi, wanted=wanted)
 
     return export
@@ -165,6 +166,31 @@ def test_derivatives_of_the_angle_count_alone(exported, tmp_path):
         found[slope] = host.get("pinion.tau")[0]
     assert found[SPEED] == pytest.approx(found[None], abs=1e-6)  # N m
     assert abs(found[0.0] - found[None]) > 50.0  # of 6e4 N m/rad times 0.01 rad
+
+
+@pytest.mark.parametrize("number", [1, 3])
+@pytest.mark.parametrize("angle", [2e4, -2e4, 1e6])
+def test_the_host_s_angle_begins_anywhere(number, angle, exported, tmp_path):
+    """Twists of 3e-3 rad were searched from there: the gearbox started undeformed, or with 2e8 N.
+
+    Torques differ by the last digit of the angle times the shaft's stiffness, 1e5 N m/rad, and
+    forces by that over the base radius, 0.023 m; the steps' tolerance adds to it.
+    """
+
+    def run(first):
+        there = {"pinion.phi": first, "pinion.w": SPEED}
+        host = Fmi2Host(exported(number), tmp_path / str(first), 0.0, 1e-9, there)
+        rows = [host.get(*forces(host))]
+        for k in range(20):
+            host.set({"pinion.phi": first + SPEED * k * 1e-4})
+            host.step(k * 1e-4, 1e-4)
+            rows.append(host.get(*forces(host)))
+        return np.array(rows)
+
+    digit = np.spacing(abs(angle)) * 1e5 / 0.023  # N
+    expected = run(0.0)
+    assert np.abs(expected).max() > 1000.0
+    assert np.abs(run(angle) - expected).max() < 10.0 * digit + 1e-5 * np.abs(expected).max()
 
 
 def test_same_bits_as_fresh(exported, tmp_path):

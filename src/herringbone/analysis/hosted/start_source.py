@@ -2,16 +2,19 @@
 
 **Equilibrium.** Unknown are the elastic coordinates, at rest, and the offsets; wanted is that no
 elastic coordinate is accelerated, and that shafts carry their initial torques. The whole turns with
-the start speed, and is accelerated by what is left over of the torques. The angle stays 0. It is
-searched with the teeth in contact on the drive flank, then on the coast flank. A shaft that hangs
-free in its clearance has no stiffness by which it would be found, so that clearances are opened
-step by step, from an equilibrium without.
+the start speed, and is accelerated by what is left over of the torques. The angle stays 0, and
+angles that the host gives count as 0 meanwhile: beside 1e6 rad the search would begin far off, and
+twists would lose their digits. Offsets take these angles up in the end. It is searched with the
+teeth in contact on the drive flank, then on the coast flank. A shaft that hangs free in its
+clearance has no stiffness by which it would be found, so that clearances are opened step by step,
+from an equilibrium without.
 
 **Periodic start.** From there the motion is searched that repeats itself every mesh period, while
 the whole turns evenly; see `kernels.periodic.motion`.
 """
 
 import math
+from textwrap import indent
 
 from herringbone.analysis.hosted.declaration import AS_SET, PERIODIC
 from herringbone.analysis.hosted.start_places import FlangePlaces, StartPlaces
@@ -57,7 +60,7 @@ def undeformed(b: np.ndarray, t: float) -> None:
     for i in range({states}):
         b[i] = 0.0
     b[{speed}] = 1.0
-    refresh(b)
+{untwisted}    refresh(b)
     scatter(blocks, b[{own}:{states}])
     propagate(blocks, t)
 {speeds}
@@ -113,7 +116,7 @@ def vibrating(b: np.ndarray) -> int:
 def settle(b: np.ndarray, t: float) -> int:
     blocks = b[{first}:]
     status = SETTLED
-    b[{step_start}] = t
+{taken}    b[{step_start}] = t
     if b[{start_mode}] == {as_set_mode}:
         b[{flank}] = 1.0
 {as_set}    else:
@@ -130,7 +133,7 @@ def settle(b: np.ndarray, t: float) -> int:
     b[{inner_step}] = LARGEST
     if fastest > 0.0:
         b[{inner_step}] = min(LARGEST, PART / fastest)
-    refresh(b)
+{given}    refresh(b)
     scatter(blocks, b[{own}:{states}])
 {starts}{keep}    return status
 """
@@ -182,7 +185,9 @@ def start_source(flanges: list[FlangePlaces], s: StartPlaces, starts: str) -> st
         f"    r[{count + k}] = blocks[{f.gear_tau}] - b[{f.initial_torque}]\n"
         for k, f in enumerate(flanges)
     )
-    as_set = "" if s.keeps_states else "        undeformed(b, t)\n"
+    untwisted = "".join(f"    b[{f.offset}] = 0.0\n" for f in flanges)
+    as_set = indent(untwisted, "    ") if s.keeps_states else "        undeformed(b, t)\n"
+    turned = [f for f in flanges if f.phi >= 0]
     text = _KERNELS.format(
         unknowns=s.unknowns,
         sizes=s.sizes,
@@ -198,6 +203,11 @@ def start_source(flanges: list[FlangePlaces], s: StartPlaces, starts: str) -> st
         speed=s.speed,
         speeds=speeds,
         offsets=offsets,
+        untwisted=untwisted,
+        taken="".join(f"    angle_{f.phi}, b[{f.phi}] = b[{f.phi}], 0.0\n" for f in turned),
+        given="".join(
+            f"    b[{f.phi}] = angle_{f.phi}\n    b[{f.offset}] -= angle_{f.phi}\n" for f in turned
+        ),
         flank=s.flank,
         inner_step=s.inner_step,
         state_sizes=s.state_sizes,
