@@ -43,6 +43,7 @@ from herringbone.analysis.twin.composite_parts import (
 )
 from herringbone.analysis.twin.composite_source import BlockMap, OwnLines, composite_source
 from herringbone.analysis.twin.condensed.lean import names_of_states
+from herringbone.analysis.twin.opened_inputs import feed_at_start
 from herringbone.analysis.twin.source import twin_source
 from herringbone.core import Asked, Component, Declaration, Instance, Kernels, Variable, parameter
 from herringbone.core.caching.generated import load_generated
@@ -84,7 +85,7 @@ def make_composite(
 
     Args:
         system: its parts are all components of this package; their values become start values.
-        outside: instances that stay outside; what they feed becomes inputs.
+        outside: instances that stay outside; what they feed becomes inputs, which start with it.
         held: states that keep their start values.
 
     Raises:
@@ -94,6 +95,7 @@ def make_composite(
     """
     inside = system.without(*outside)
     parts = make_parts(inside)
+    fed = feed_at_start(system, parts) if outside else ""
     instances, layout = parts.instances, parts.layout
     without_core = why_not(parts)
     steps = None if without_core else _stepping(parts)
@@ -108,8 +110,8 @@ def make_composite(
         OwnLines(rates=_still(parts, held)),
     )
     if steps:
-        fed = tuple(to for _, to in places.inputs)
-        source += core_source(parts, declaration.first_table, fed, held=held, shown=True)
+        inputs = tuple(to for _, to in places.inputs)
+        source += core_source(parts, declaration.first_table, inputs, held=held, shown=True)
         directed = {declaration.index[full_name(i, v)]: float(i[v]) for i, v in directed_by(parts)}
         micro_step, tolerance = declaration.indices(MICRO_STEP, TOLERANCE)
         source += remark_source(steps, micro_step, tolerance, directed)
@@ -120,7 +122,8 @@ def make_composite(
         declaration,
         Kernels(step, module.system_rhs, module.system_out),
         f"{inside.description}: {', '.join(i.name for i in instances)} as one set of equations."
-        + (f"\n\n{dear(without_core)}." if without_core else ""),
+        + (f"\n\n{dear(without_core)}." if without_core else "")
+        + (fed and f"\n\n{fed}"),
         load=loader,
         verify=loader.verify,
         start=module.system_start,

@@ -1,5 +1,6 @@
 """A system as one component: the same equations as the twin, the feedthrough that it declares."""
 
+import re
 import sys
 
 import numpy as np
@@ -115,6 +116,21 @@ def test_declared_feedthrough_is_what_the_equations_have(outside, tmp_path):
             if seed[d.index[output]] != 0.0:
                 inputs.add(v.name)
     assert found == {v.name: set(v.feedthrough) for v in d.outputs}
+
+
+def test_what_is_fed_from_outside_starts_as_it_is_fed(tmp_path):
+    """Seats at 0 were 3248 N in place of 1988 N: outputs of the whole, to rounding."""
+    system = prepared("gearbox", None, Wishes()).system
+    whole, composite = Twin(system), make_composite(system, SEATS_OUTSIDE)
+    names = [v.name for v in composite.component.declaration.outputs]
+    expected = whole.observe(np.zeros(1), whole.state[:, None], names)[0]
+    found = _instance(composite, tmp_path)
+    np.testing.assert_allclose([found[n] for n in names], expected, rtol=1e-9, atol=1e-9)
+    force = found["bearing_supports.shaft.pinion_left.f_y"]
+    told = dict(re.findall(r"(start\S+) = (\S+) N", composite.component.equations))
+    there = [float(told[f"start.pinion_left.f_{axis}"]) for axis in "xy"]
+    assert np.hypot(*there) == pytest.approx(force, rel=1e-5)  # N, in other frames; six digits
+    assert force > 1000.0
 
 
 def test_state_vectors_are_those_of_the_parts_in_use(composite, tmp_path):
