@@ -144,16 +144,22 @@ def test_slow_steps_are_told(kind, change, told, exported, tmp_path):
     assert len([text for text in said if "condensed core" in text]) == told
 
 
-def test_limits_are_those_of_the_documentation(exported, capsys):
-    """By the equations that the FMU carries, for any inertia."""
-    file = exported("motion")
+@pytest.mark.parametrize(("kind", "shaft"), [("motion", False), ("torque", True)])
+def test_limits_are_those_of_the_documentation(kind, shaft, exported, capsys):
+    """By the equations that the FMU carries, for any inertia, with the command that it gives."""
+    file = exported(kind)
     with ZipFile(file) as archive:
         page = archive.read("documentation/index.html").decode()
+    assert "--flange PORT --inertia J`" in page
+    assert "gives torque with `--stiffness K --damping D`" in page
     for inertia in ("0.02", "0.1", "1"):
-        row = re.search(rf"<td>motion</td><td>{inertia} kg.*?</td><td>(\d+) us", page)
+        row = re.search(
+            rf"<td>pinion</td><td>{kind}</td><td>{inertia} kg.*?</td><td>(\d+) us", page
+        )
         command = ["stability", str(file), "--flange", "pinion", "--inertia", inertia]
+        command += ["--stiffness", "6e4", "--damping", "5"] if shaft else []
         assert cli.main(command) == 0
-        limit = re.search(r"    0  inertia at the flange +([\d.]+)", capsys.readouterr().out)
+        limit = re.search(r"    0  (?:inertia|shaft).* ([\d.]+)\n", capsys.readouterr().out)
         assert float(limit[1]) == pytest.approx(float(row[1]), abs=0.5)
 
 

@@ -43,7 +43,8 @@ _STEPS = (
     "Largest stable communication steps at the start, with an inertia at one flange and nothing "
     "else at the others, where the host evaluates its shaft at the communication points; inputs "
     "held, or with their first derivatives. `herringbone stability FILE.fmu --flange PORT "
-    "--inertia J` asks for others, and for shafts that are stepped in parallel. Accuracy asks for "
+    "--inertia J`, at a flange to which the host gives torque with `--stiffness K --damping D` of "
+    "its shaft, asks for others, and for shafts that are stepped in parallel. Accuracy asks for "
     "less."
 )
 
