@@ -8,6 +8,8 @@
 
 /* A jump is blamed that is so many times larger than those before. */
 static const double LARGER = 2.0;
+/* Of the largest one; smaller jumps, as of a noisy signal, tell nothing of it. */
+static const double COUNTS = 1e-3;
 static const char ADVICE[] = "communication_steps.txt";
 
 /* fmax would need the mathematical library. */
@@ -50,7 +52,7 @@ static void note_ahead(Instance *instance) {
 }
 
 /* What is known of an input's jumps: the largest of the newer half and of the older half, and how
-   often the newer ones change their sign. */
+   often the newer ones change their sign, of those that count beside the largest. */
 typedef struct {
     double newer, older;
     uint32_t turns;
@@ -60,15 +62,18 @@ static Jumps jumps_of(const Instance *instance, uint32_t input) {
     const double *all = instance->jumps + input * JUMPS;
     uint32_t known = instance->steps < JUMPS ? instance->steps : JUMPS, half = (known + 1) / 2;
     Jumps found = {0.0, 0.0, 0};
-    double before = 0.0;
     for (uint32_t k = known; k > 0; k--) { /* the last one has k = 1 */
-        double jump = all[(instance->steps - k) % JUMPS];
         double *largest = k <= half ? &found.newer : &found.older;
-        *largest = larger(*largest, fabs(jump));
+        *largest = larger(*largest, fabs(all[(instance->steps - k) % JUMPS]));
+    }
+    double before = 0.0;
+    for (uint32_t k = known; k > 0; k--) {
+        double jump = all[(instance->steps - k) % JUMPS];
+        if (!(fabs(jump) > COUNTS * found.newer))
+            continue;
         if (k <= half && jump * before < 0.0)
             found.turns++;
-        if (jump != 0.0)
-            before = jump;
+        before = jump;
     }
     return found;
 }
