@@ -295,6 +295,19 @@ def test_what_lies_in_it(fmi, exported):
     assert description.defaultExperiment.tolerance
 
 
+def test_its_page_tells_of_this_fmu(exported):
+    """Not of the integration of a gear pair's FMU; values of what is no variable of it."""
+    with ZipFile(exported(0)) as archive:
+        page = archive.read("documentation/index.html").decode()
+    assert "micro_step" not in page
+    assert "micro step" not in page
+    assert "**Refused**" in page  # what follows that paragraph
+    assert "<td>gear_mesh.face_width</td><td>m</td><td>0.0473</td>" in page
+    told = set(re.findall(r"<td>([\w.]+)</td>", page))
+    assert {"bearing_supports.seat_motion", "gear_mesh.drag_torque"} <= told
+    assert not [name for name in told if ".guess_" in name]
+
+
 @pytest.mark.parametrize("fmi", [2, 3])
 def test_reference_results_are_replayed(fmi, exported, tmp_path):
     file = exported(2 if fmi == 3 else 0, fmi)

@@ -1,5 +1,6 @@
 """A gearbox as one component for any host."""
 
+import re
 from collections.abc import Callable
 from functools import cache, partial
 from types import ModuleType
@@ -67,6 +68,13 @@ _ROUGH = 5.0
 """See `Form`: with less, communication steps would take unequal times."""
 EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_TOLERANCE)
 """Default experiment."""
+_INTEGRATION = re.compile(r"\*\*Integration\*\*.*?\n\n(?=\*\*|\Z)", re.DOTALL)
+"""What a part's text says of its integration as an FMU of its own."""
+_OF_PARTS = """\
+These are the equations of its parts, with the parts' own names. Here they are integrated as one
+set, by inner steps that follow the tolerance; what is said of a part's own steps, or of masters, is
+of FMUs of the parts alone. Names that are not in the table of variables are fixed at export, or
+shown if it is exported with --parameters or --internals."""
 _NOT_SETTLED = (
     "no equilibrium of the elastic coordinates was found under these torques; they start "
     "undeformed, and will vibrate: look at the torques, or set start_mode = as_set",
@@ -182,8 +190,9 @@ def _hosting(
 
 
 def _equations(boundary: Boundary, parts: Parts) -> str:
-    texts = (i.component.equations for i in parts.instances)
-    return "\n\n".join([f"{boundary.system.description}.", *dict.fromkeys(texts)])
+    texts = (_INTEGRATION.sub("", i.component.equations) for i in parts.instances)
+    head = f"{boundary.system.description}."
+    return "\n\n".join([head, _OF_PARTS, *dict.fromkeys(texts)])
 
 
 def _longest_step(declaration: Declaration) -> Callable[[np.ndarray], float]:

@@ -7,9 +7,10 @@ from collections.abc import Iterable
 from importlib.metadata import distribution
 from typing import TYPE_CHECKING
 
-from herringbone.core import Component, Variable
+from herringbone.core import Component, Declaration, Variable
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.declaring.units import quantity
-from herringbone.core.declaring.variable import Variability
+from herringbone.core.declaring.variable import Causality, Variability
 from herringbone.fmi import interface
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 FLANGE_MODELS = "extra/herringbone/flange_models.json"
 """Place in an FMU of its linear equations as its flanges feel them, by flange."""
 _UNTESTED = "built, not run"
+_OF_START = ".guess_", ".start."
 _HEAD = ("name", "causality", "unit", "start", "range", "description")
 _SIGNS = (
     "SI units; tools may show others. Forces and torques are those that act on the body whose "
@@ -55,7 +57,7 @@ def documentation(component: Component, platforms: Iterable["Platform"]) -> byte
     binaries = "".join(
         f"<li>{p.name}{'' if p.tested else f' ({_UNTESTED})'}</li>" for p in platforms
     )
-    hosted = ""
+    hosted = fixed = ""
     if component.hosting:
         notes = "".join(f"<li>{html.escape(note)}</li>" for note in component.hosting.notes)
         hosted = (
@@ -64,12 +66,13 @@ def documentation(component: Component, platforms: Iterable["Platform"]) -> byte
             f"<h2>Communication steps</h2><p>{html.escape(_STEPS)}</p>"
             f"{_table(component.hosting.advice())}"
         )
+        fixed = _fixed(declaration)
     text = (
         f"<!DOCTYPE html><html><head><meta charset='utf-8'><title>{component.name}</title></head>"
         f"<body><h1>{component.name}</h1><p>{html.escape(declaration.description)}.</p>"
         f"<h2>Binaries</h2><ul>{binaries}</ul>"
         f"<h2>Signs</h2><p>{html.escape(_SIGNS)}</p>{hosted}"
-        f"<h2>Variables</h2>{_variables(component)}"
+        f"<h2>Variables</h2>{_variables(component)}{fixed}"
         f"<h2>Equations</h2><pre>{html.escape(component.equations.strip())}</pre></body></html>\n"
     )
     return text.encode()
@@ -102,6 +105,20 @@ def _variables(component: Component) -> str:
         for t in interface.texts(component.declaration).values()
     )
     return _table([_HEAD, *map(_row, shown), *texts])
+
+
+def _fixed(declaration: Declaration) -> str:
+    """Parameters that are not shown, without those that the search for the start works with."""
+    rows = [
+        (v.name, v.unit, repr(float(v.start)), v.description)
+        for v in interface.every_real(declaration).values()
+        if v.causality is Causality.PARAMETER
+        and v.name in declaration.hidden
+        and v.name != INTERFACE_DEGREE
+        and not any(of_start in v.name for of_start in _OF_START)
+    ]
+    head = "name", "unit", "value", "description"
+    return f"<h2>Fixed at export</h2>{_table([head, *rows])}" if rows else ""
 
 
 def _table(rows: Iterable[tuple[str, ...]]) -> str:
