@@ -72,6 +72,24 @@ def test_our_master_takes_its_items(item, fmu, tmp_path):
     assert np.array_equal(hb.run(file, **options)[f"box.{PATH}"], run[f"box.{PATH}"])
 
 
+@pytest.mark.parametrize(("mode", "told"), [(0, 0), (1, 1), (2, 1)])
+def test_states_that_do_not_count_are_told(mode, told, tmp_path_factory):
+    """A search overwrites them; as_set keeps them."""
+    folder = tmp_path_factory.mktemp("set")
+    wanted = Wanted(exchange=True, internals=True)
+    file = export_fmu("gearbox", folder / "gearbox.fmu", wanted=wanted)
+    values = {**LOAD, "gear_mesh.angle": 1.0, "start_mode": mode}
+    host = Fmi2Host(file, folder / "fmu", values=values)
+    (angle,) = host.get("gear_mesh.angle")
+    lines = [m for m in host.messages if "start_mode = as_set alone" in m]
+    assert angle == pytest.approx(0.0 if told else 1.0, abs=1e-4)  # rad: it vibrates around it
+    assert len(lines) == told
+    assert all("gear_mesh.angle is set to 1, but" in line for line in lines)
+    host.slave.reset()
+    host.initialise(values=LOAD)
+    assert len([m for m in host.messages if "start_mode = as_set alone" in m]) == told
+
+
 def test_what_is_no_item_is_refused(fmu, tmp_path):
     if read_model_description(str(fmu)).fmiVersion == "2.0":
         host = Fmi2Host(fmu, tmp_path, values=LOAD)

@@ -123,7 +123,7 @@ def _entries(
         "remark": "hb_remark" if by_tolerance else "NULL",
         "tolerance": declaration.index[by_tolerance.tolerance] if by_tolerance else 0,
         "watch": "&hb_watch" if hosting else "NULL",
-        "start_made": "hb_start_made" if _starts_as_made(component) else "NULL",
+        "start_made": _told_at_the_start(component),
         "runs_on_count": len(hosting.runs_on) if hosting else 0,
         "runs_on": "runs_on",
         "load_scratch": loader.scratch if loader else 0,
@@ -141,9 +141,11 @@ def _entries(
     }
 
 
-def _starts_as_made(component: Component) -> bool:
-    """Tells if states begin anywhere but at 0, and nothing looks for them when the FMU starts."""
-    return not component.hosting and any(v.start for v in component.declaration.states)
+def _told_at_the_start(component: Component) -> str:
+    """What warns of states: set ones where they are searched, else those that begin not at 0."""
+    if component.hosting:
+        return "hb_start_found"
+    return "hb_start_made" if any(v.start for v in component.declaration.states) else "NULL"
 
 
 def _runs_on(component: Component) -> Iterable[str]:

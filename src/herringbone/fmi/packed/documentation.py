@@ -35,9 +35,11 @@ _HOSTED = (
     "communication step: its product with the mean speed is the energy that was handed over. "
     "At the start the elastic coordinates vibrate as they do when all has settled under the "
     "torques. start_mode = equilibrium: they move as one with the gears, which is no part of that "
-    "vibration, so that another one rings down; as_set: they start undeformed. The tolerance that "
-    "the host gives, or that of the default experiment, decides inner steps: relative, of states "
-    "by the largest of their kind."
+    "vibration, so that another one rings down; as_set: they start undeformed, or as states are "
+    "set, which count there alone. The pinion's angle starts at 0; `herringbone run` starts at the "
+    "angle where the torques balance, so that its rows are not those of this FMU. The tolerance "
+    "that the host gives, or that of the default experiment, decides inner steps: relative, of "
+    "states by the largest of their kind."
 )
 
 

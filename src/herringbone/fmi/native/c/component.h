@@ -102,6 +102,8 @@ extern const HbWatch hb_watch;
 
 /* Warns if the host has set a parameter, and none of the states that an FMU was made with to suit it. */
 void hb_start_made(struct Instance *instance);
+/* Warns if the host has set a state that `settle` has searched anew. */
+void hb_start_found(struct Instance *instance);
 
 /* What is logged once, as soon as it holds; the format is as that of a refusal. */
 typedef struct {
@@ -171,7 +173,8 @@ typedef struct {
     int32_t (*remark)(double *b, double *w, int32_t which, double *report);
     uint32_t tolerance; /* index of the local that has the host's tolerance; 0: there is none */
     const HbWatch *watch; /* NULL: nothing is kept of the inputs, and the linker leaves it out */
-    /* When initialisation ends: hb_start_made, if states start as the FMU was made. */
+    /* When initialisation ends: hb_start_made, if states start as the FMU was made; hb_start_found,
+       if they are searched. */
     void (*start_made)(struct Instance *instance);
     uint32_t runs_on_count;
     const HbRunsOn *runs_on;

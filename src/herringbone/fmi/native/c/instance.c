@@ -76,6 +76,7 @@ static bool start(Instance *instance) {
     instance->outdated = false;
     instance->rates_outdated = true;
     instance->not_settled = 0;
+    instance->state_set = 0;
     instance->told = 0;
     instance->steps = 0;
     return true;

@@ -55,6 +55,8 @@ struct Instance {
     bool outdated;       /* outputs must be computed before they are read */
     bool rates_outdated; /* derivatives of the states, too */
     int32_t not_settled; /* line that says what start was not found; 0: none */
+    uint32_t state_set;  /* 1 + reference of the state that the host has set last; 0: none */
+    double set_to;       /* its value */
     uint32_t told;       /* bit k: remark k was logged since the start of initialisation */
     Moment now;
     Texts *texts;

@@ -206,6 +206,10 @@ static Status set_checked(Instance *instance, uint32_t reference, double value) 
         memset(instance->work, 0, hb_component.work * sizeof *instance->work);
     }
     instance->block[reference] = value;
+    if (access == HB_STATE) {
+        instance->state_set = reference + 1;
+        instance->set_to = value;
+    }
     return STATUS_OK;
 }
 
