@@ -268,10 +268,11 @@ static void test_resources(void) {
     fmi2FreeInstance(c);
 }
 
-/* A URI as of FMI 2.0, with an encoded letter: the resources are found in its folder. */
-static void test_location(void) {
+/* A URI as of FMI 2.0, with an encoded letter, whose scheme has no case: the resources are found in
+   its folder. */
+static void test_location(const char *scheme) {
     char uri[4096];
-    snprintf(uri, sizeof uri, "file://localhost%s%.*s%%%02X", *folder == '/' ? "" : "/",
+    snprintf(uri, sizeof uri, "%s://localhost%s%.*s%%%02X", scheme, *folder == '/' ? "" : "/",
              (int)strlen(folder) - 1, folder, (unsigned)folder[strlen(folder) - 1]);
     fmi2Component c =
         fmi2Instantiate("r", fmi2CoSimulation, "{token}", uri, &functions2, fmi2False, fmi2False);
@@ -407,7 +408,8 @@ int main(int count, char **arguments) {
     test_resources();
     test_derivatives();
     test_work_space();
-    test_location();
+    test_location("file");
+    test_location("FILE");
     test_long_message();
     test_logging();
     return report();
