@@ -42,8 +42,8 @@ def modes_of(model):
     return np.sqrt(squares) / (2 * np.pi), shapes.reshape(NODES, 3, -1)
 
 
-def frd_text(frequency, shapes, coordinates, *, generalised=True, short=False):
-    """As CalculiX 2.20 writes it."""
+def frd_text(frequency, shapes, coordinates, *, generalised=True, short=False, steps=1):
+    """As CalculiX 2.20 writes it; modes of each step are numbered from 1."""
     width = 5 if short else 10
     last = "0" if short else "1"
     head = f"    2C                  {NODES:12d}{'':37}{last}"
@@ -59,6 +59,7 @@ def frd_text(frequency, shapes, coordinates, *, generalised=True, short=False):
             lines.append(f"    1PGM                {1.0:12.6E}")
             lines.append(f"    1PGK                {(2 * np.pi * f) ** 2:12.6E}")
         lines += [
+            f"    1PMODE         {n % (len(frequency) // steps) + 1:10d}",
             f"  100CL  {101 + n}{f:12.5E}{NODES:12d}{'':20}2{n + 1:5d}MODAL{last:>7}",
             " -4  DISP        4    1",
             " -5  D1          1    2    1    0",

@@ -16,6 +16,7 @@ from herringbone.core import ResourceError
 from herringbone.core.reading.numbers import number, whole
 from herringbone.core.reading.texts import LARGEST_MODEL, lines_of, read_text
 from herringbone.housing.importers.mode_set import ModeSet, check_modal_mass, in_order
+from herringbone.housing.importers.modes_twice import check_no_number_twice
 
 _LABEL_WIDTHS = {"0": 5, "1": 10}
 """Columns of a node number by the format number of a block; 2 and 3 are binary."""
@@ -26,7 +27,8 @@ def read_frd(path: str | Path) -> ModeSet:
     """Read the modes of a CalculiX result file.
 
     Raises:
-        ResourceError: not readable, binary, truncated, without modes, or complex modes.
+        ResourceError: not readable, binary, truncated, without modes, or complex modes, or the
+            modes of two steps.
     """
     path = Path(path)
     lines = lines_of(read_text(path, most=LARGEST_MODEL, ascii_only=True))
@@ -55,6 +57,7 @@ def _parse(lines: list[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
     node = np.empty(0, dtype=int)
     coordinates = np.empty((0, 3))
     header: dict[str, float] = {}
+    numbers: list[int] = []
     frequencies: list[float] = []
     shapes: list[np.ndarray] = []
     rest = iter(lines)
@@ -72,6 +75,7 @@ def _parse(lines: list[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
                 if kind.endswith("I") or "1PGM" not in header:
                     raise ResourceError("the modes are complex or have no generalised mass")
                 mass = check_modal_mass(header["1PGM"], f"mode {len(shapes) + 1}")
+                numbers.append(int(header.get("1PMODE", 0)))
                 frequencies.append(_frequency(header["1PGK"] / mass, number(line[12:24])))
                 shapes.append(in_order(node, at, values) / math.sqrt(mass))
             header.clear()
@@ -79,6 +83,7 @@ def _parse(lines: list[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
         raise ResourceError(
             "it has no modal displacements; ask for *NODE FILE with U in a *FREQUENCY step"
         )
+    check_no_number_twice(numbers, frequencies)
     return node, coordinates, np.array(frequencies), np.stack(shapes, axis=-1)
 
 

@@ -1,11 +1,34 @@
 """Modes that stand twice in a file: taken so, they would halve the stiffness."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from herringbone.core import ResourceError
 
 _SAME_FREQUENCY, _SAME_SHAPE = 1e-4, 0.999
 """Relative difference of frequencies, and MAC, within which modes of two sets are the same."""
+
+
+def check_no_number_twice(numbers: Sequence[int], frequency: Sequence[float]) -> None:
+    """Refuse a mode number that comes again: the file has the modes of two analyses.
+
+    Args:
+        numbers: (n,) of the modes in the file; those below 1 are no numbers.
+        frequency: (n,) [1/time].
+
+    Raises:
+        ResourceError: a number stands twice.
+    """
+    first: dict[int, float] = {}
+    for number, value in zip(numbers, frequency, strict=True):
+        if number > 0 and number in first:
+            raise ResourceError(
+                f"mode {number} stands twice, with {first[number]:.6g} and {value:.6g} per unit of "
+                "time; two analyses would be added up: keep one step, one load case, and one kind "
+                "of data set (55 or 2414)"
+            )
+        first[number] = value
 
 
 def check_no_mode_twice(frequency: np.ndarray, shapes: np.ndarray, file: str) -> None:

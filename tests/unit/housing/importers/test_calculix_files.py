@@ -90,6 +90,17 @@ def test_two_steps_with_the_same_modes(tmp_path, seats, model):
     np.testing.assert_allclose(load(path, seats).frequency_hz[:6], frequency[0], rtol=5e-7)
 
 
+def test_two_steps_of_different_modes(tmp_path, seats, model):
+    """A preload moves frequencies by 1 %: no doubles, but twice as soft if added up."""
+    frequency, shapes = modes_of(model)
+    path = tmp_path / "modes.frd"
+    both = np.concatenate([frequency, 1.01 * frequency]), np.tile(shapes, 2)
+    path.write_text(frd_text(*both, model[2], steps=2))
+    text = refusal(lambda: load(path, seats))
+    assert f"modes.frd: mode 1 stands twice, with {frequency[0]:.4g}" in text
+    assert "two analyses would be added up: keep one step" in text
+
+
 def test_static_compliance_completes_few_modes(tmp_path, seats, model):
     """Eight of 36 modes with the exact statics: pseudo modes carry the rest, positive."""
     frequency, shapes = modes_of(model)

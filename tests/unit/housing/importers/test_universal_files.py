@@ -25,7 +25,7 @@ def node_set(pyuff, coordinates, *, first=1, def_cs=1, disp_cs=1):
     )  # fmt: skip
 
 
-def shape_sets(pyuff, frequency, shapes, *, mass=2.0, zeta=0.03, eta=0.0, nodes=NODES):
+def shape_sets(pyuff, frequency, shapes, *, mass=2.0, zeta=0.03, eta=0.0, nodes=NODES, **more):
     for n, f in enumerate(frequency):
         yield pyuff.prepare_55(
             id1="NONE", id2="NONE", id3="NONE", id4="NONE", id5="NONE",
@@ -33,7 +33,7 @@ def shape_sets(pyuff, frequency, shapes, *, mass=2.0, zeta=0.03, eta=0.0, nodes=
             n_data_per_node=3, load_case=1, mode_n=n + 1, freq=f, modal_m=mass,
             modal_damp_vis=zeta, modal_damp_his=eta, node_nums=np.arange(1, nodes + 1),
             r1=shapes[:nodes, 0, n], r2=shapes[:nodes, 1, n], r3=shapes[:nodes, 2, n],
-        )  # fmt: skip
+        ) | more  # fmt: skip
 
 
 def complex_sets(pyuff, frequency, shapes, angle, zeta=0.03):
@@ -195,7 +195,25 @@ def test_modes_that_stand_in_two_kinds_of_data_sets(pyuff, write_uff, seats, mod
     path = write_uff(*shape_sets(pyuff, frequency, np.sqrt(2.0) * shapes))
     with path.open("a") as file:
         file.write("\n".join(text_2414(frequency, -shapes)) + "\n")
-    assert "modes.unv: modes 1 and 37 are the same" in refusal(lambda: load(path, seats))
+    assert "modes.unv: mode 1 stands twice, with" in refusal(lambda: load(path, seats))
+
+
+def test_modes_of_two_analyses(pyuff, write_uff, seats, model):
+    """1 % apart they are no doubles; numbers below 1 are none, and doubles are known by shape."""
+    frequency, shapes = modes_of(model)
+    other = list(shape_sets(pyuff, 1.01 * frequency, shapes, load_case=2))
+    path = write_uff(*shape_sets(pyuff, frequency, shapes), *other)
+    said = f"modes.unv: mode 1 stands twice, with {frequency[0]:.5g}"
+    assert said[:-1] in refusal(lambda: load(path, seats))
+    path = write_uff()
+    with path.open("a") as file:
+        for f in (frequency, 1.01 * frequency):
+            file.write("\n".join(text_2414(f, shapes)) + "\n")
+    assert said[:-1] in refusal(lambda: load(path, seats))
+    unnumbered = list(shape_sets(pyuff, frequency, shapes, mode_n=0))
+    assert load(write_uff(*unnumbered), seats).frequency_hz.size == 3 * NODES
+    twice = write_uff(*unnumbered, *shape_sets(pyuff, frequency, shapes, mode_n=0))
+    assert "modes.unv: modes 1 and 37 are the same" in refusal(lambda: load(twice, seats))
 
 
 TURN = np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
