@@ -148,6 +148,47 @@ def test_bad_uff(pyuff, write_uff, seats, model):
     assert expected in text(write_uff(units, *shape_sets(pyuff, frequency, shapes)))
 
 
+ELEMENTS = """    -1
+  2412
+         1       115         1         1         7        -1
+         1         2         3
+    -1
+"""
+"""A data set that is not read; its record ends as a mark does."""
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        lambda text: "\n".join(line.ljust(80) for line in text.splitlines()),
+        lambda text: text.replace("    -1\n", "    -1 \n"),
+        lambda text: text.replace("    -1\n", "    -1\r\n"),
+        lambda text: ELEMENTS + text,
+        lambda text: text + ELEMENTS + ELEMENTS,
+    ],
+    ids=["padded, without last line end", "one blank", "mixed line ends", "-1 before", "-1 after"],
+)
+@pytest.mark.parametrize("kind", [55, 2414])
+def test_marks_as_programs_write_them(pyuff, write_uff, seats, model, written, kind):
+    """All modes are there, whatever stands beside a mark."""
+    frequency, shapes = modes_of(model)
+    path = write_uff(*(shape_sets(pyuff, frequency, shapes, mass=1.0) if kind == 55 else ()))
+    if kind == 2414:
+        path.write_text(path.read_text() + "\n".join(text_2414(frequency, shapes)) + "\n")
+    path.write_bytes(written(path.read_text()).encode())
+    found = read_uff(path, read_seats(seats))
+    np.testing.assert_allclose(found.frequency, frequency, rtol=5.1e-6)
+    np.testing.assert_allclose(found.shapes, shapes, rtol=5.1e-6)
+
+
+def test_marks_that_do_not_pair(pyuff, write_uff, seats, model):
+    """Two marks too many, so that data sets would be what stands between them."""
+    path = write_uff(*shape_sets(pyuff, *modes_of(model)))
+    path.write_text(f"    -1\n{path.read_text()}    -1\n")
+    text = refusal(lambda: read_uff(path, read_seats(seats)))
+    assert "modes.unv: data set 1 does not begin with its number" in text
+
+
 def test_nodes_in_two_sets(pyuff, tmp_path, seats, model):
     """Node 6 stands in both."""
     path = tmp_path / "modes.unv"
