@@ -3,7 +3,8 @@
 Small, large and free field formats are read; real matrices only. pyNastran would read more, but it
 asks for numpy below 2.
 
-Source: MSC Nastran Quick Reference Guide, bulk data entries DMIG and GRID, and format of entries.
+Source: MSC Nastran Quick Reference Guide, bulk data entries DMIG, GRDSET and GRID, and format of
+entries.
 """
 
 import math
@@ -24,6 +25,9 @@ _REAL = {1, 2}
 _SAME = 1e-6
 """Relative difference of an element and its transpose that is rounding."""
 _SHORT, _LONG = 8, 16
+_CARDS = {"DMIG", "GRDSET", "GRID"}
+_CP, _CD = 2, 6
+"""Fields of GRID and GRDSET: coordinate systems of the position and of the displacements."""
 _BARE_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
 
 
@@ -32,24 +36,28 @@ def read_dmig(path: str | Path) -> MatrixModel:
 
     Raises:
         ResourceError: not readable, malformed, complex, not symmetric, an element given twice,
-            or not exactly one matrix of each kind.
+            local coordinates, or not exactly one matrix of each kind.
     """
     path = Path(path)
     text = read_text(path, most=LARGEST_MODEL, ascii_only=True)
     entries: dict[str, dict[tuple[Row, Row], float]] = {}
-    coordinates: dict[int, np.ndarray] = {}
+    grids: list[list[str]] = []
+    default: list[str] = []
     try:
         for card in _cards(text):
             if card[0] == "DMIG":
                 _read_dmig(card[1:], entries)
             elif card[0] == "GRID":
-                coordinates[whole(card[1])] = _position(card)
+                grids.append(card)
+            else:
+                default = card
+        coordinates = _coordinates(grids, default)
         for name, matrix in entries.items():
             _check_symmetric(matrix, name)
     except ResourceError as error:
         raise ResourceError(f"{path}: {error}") from None
     except (ValueError, IndexError) as error:
-        raise ResourceError(f"{path}: a DMIG or GRID card is malformed: {error}") from error
+        raise ResourceError(f"{path}: a DMIG, GRDSET or GRID card is malformed: {error}") from error
     stiffness, mass = (entries[only_name(list(entries), letter, path)] for letter in "KM")
     rows = sorted({row for matrix in (stiffness, mass) for pair in matrix for row in pair})
     return MatrixModel(
@@ -59,7 +67,7 @@ def read_dmig(path: str | Path) -> MatrixModel:
 
 
 def _cards(text: str) -> Iterator[list[str]]:
-    """Fields of each DMIG and GRID entry, continuations joined."""
+    """Fields of each DMIG, GRDSET and GRID entry, continuations joined."""
     card: list[str] = []
     for raw in lines_of(text):
         line = raw.split("$")[0].rstrip()
@@ -69,10 +77,10 @@ def _cards(text: str) -> Iterator[list[str]]:
         if fields[0] in {"", "+", "*"} or fields[0][0] in "+*":
             card += fields[1:]
             continue
-        if card and card[0] in {"DMIG", "GRID"}:
+        if card and card[0] in _CARDS:
             yield card
         card = [fields[0].rstrip("*").upper(), *fields[1:]]
-    if card and card[0] in {"DMIG", "GRID"}:
+    if card and card[0] in _CARDS:
         yield card
 
 
@@ -100,11 +108,23 @@ def _real(field: str) -> float:
     return number(text if "E" in text else _BARE_EXPONENT.sub(r"E\1", text))
 
 
-def _position(grid: list[str]) -> np.ndarray:
-    # Fields: GRID, label, coordinate system of the position, x, y, z, that of the displacements.
-    if _integer(grid[2]) or _integer(grid[6]):
-        raise ResourceError(f"GRID {grid[1]} has its own coordinate system; use the basic one")
-    return np.array([_real(x) for x in grid[3:6]])
+def _coordinates(grids: list[list[str]], default: list[str]) -> dict[int, np.ndarray]:
+    """Positions of nodes by label; a field that GRID leaves blank is that of GRDSET.
+
+    Raises:
+        ResourceError: a coordinate system is not the basic one, or a node has two places.
+    """
+    found: dict[int, np.ndarray] = {}
+    for grid in grids:
+        label, position = whole(grid[1]), np.array([_real(x) for x in grid[3:6]])
+        for at in (_CP, _CD):
+            given = grid[at] or "".join(default[at : at + 1])
+            if _integer(given):
+                whose = "its own coordinate system" if grid[at] else f"that of GRDSET, {given}"
+                raise ResourceError(f"GRID {label} has {whose}; use the basic one")
+        if not np.array_equal(found.setdefault(label, position), position):
+            raise ResourceError(f"GRID {label} stands twice, at two places")
+    return found
 
 
 def _read_dmig(fields: list[str], entries: dict[str, dict[tuple[Row, Row], float]]) -> None:

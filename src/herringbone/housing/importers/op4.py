@@ -26,8 +26,8 @@ def read_op4(path: str | Path) -> MatrixModel:
     """Read a stiffness matrix (name begins with K) and a mass matrix (name begins with M).
 
     Raises:
-        ResourceError: not readable, binary, truncated, malformed, complex, or not exactly one
-            matrix of each kind.
+        ResourceError: not readable, binary, truncated, malformed, complex, a name twice, or not
+            exactly one matrix of each kind.
     """
     path = Path(path)
     data = read_bytes(path, LARGEST_MODEL)
@@ -37,7 +37,7 @@ def read_op4(path: str | Path) -> MatrixModel:
             "ASSIGN OUTPUT4='file.op4',UNIT=11,FORM=FORMATTED"
         )
     try:
-        matrices = dict(_matrices(data.decode("ascii").splitlines()))
+        matrices = _by_name(data.decode("ascii").splitlines())
     except ResourceError as error:
         raise ResourceError(f"{path}: {error}") from None
     except (ValueError, IndexError) as error:
@@ -49,6 +49,15 @@ def read_op4(path: str | Path) -> MatrixModel:
     return MatrixModel(
         stiffness, mass, None, {}, None, {"tool": "Nastran OUTPUT4", "file": path.name}
     )
+
+
+def _by_name(lines: list[str]) -> dict[str, sp.csr_array]:
+    found: dict[str, sp.csr_array] = {}
+    for name, matrix in _matrices(lines):
+        if name in found:
+            raise ResourceError(f"matrix {name} stands twice; keep one")
+        found[name] = matrix
+    return found
 
 
 def _matrices(lines: list[str]) -> Iterator[tuple[str, sp.csr_array]]:

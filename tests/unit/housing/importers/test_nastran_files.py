@@ -53,6 +53,27 @@ def test_bad_dmig(dmig):
     assert "is malformed" in text("DMIG*   MAAX" + " " * 27 + "1", "DMIG*   MAAX" + " " * 27 + "?")
 
 
+def test_coordinate_systems_of_grids(dmig, model):
+    """A blank field is that of GRDSET, wherever that stands; 0 is the basic one."""
+    path = dmig()
+    whole = path.read_text()
+
+    def text(cards):
+        path.write_text(cards + whole)
+        return refusal(lambda: read_dmig(path))
+
+    said = "model.pch: GRID 1 has that of GRDSET, 5; use the basic one"
+    assert said in text("GRDSET,,,,,,5\n")
+    assert said in text("GRDSET  " + " " * 8 + "       5\n")
+    assert said in text("GRID,1,,1.,2.,3.\nGRDSET,,5\n")
+    assert "GRID 1 has its own coordinate system" in text("GRID,1,,1.,2.,3.,4\n")
+    assert "GRID 1 stands twice, at two places" in text("GRID,1,,1.,2.,3.\n")
+    path.write_text("GRDSET,,,,,,5\nGRID,99,0,1.,2.,3.,0\n" + whole.replace("GRID*", "GRIDX*"))
+    np.testing.assert_array_equal(read_dmig(path).coordinates[99], [1.0, 2.0, 3.0])
+    path.write_text("GRDSET,,0,,,,0,123\n" + whole + "".join(whole.splitlines(True)[1:3]))
+    np.testing.assert_allclose(read_dmig(path).coordinates[1], model[2][0], rtol=6e-10)
+
+
 FORM_6 = """DMIG,K,0,6,2,0
 DMIG,K,1,1,,1,1,3.+8
 ,2,1,-2.+8
@@ -119,4 +140,7 @@ def test_bad_op4(op4):
     assert "line 1 is no OUTPUT4 header" in text(b"hello\n")
     complex_one = whole.replace("       6       2KAA", "       6       4KAA")
     assert "matrix KAA has type 4; real ones" in text(complex_one.encode())
+    assert "model.op4: matrix KAA stands twice; keep one" in text(
+        whole.replace("MAA     ", "KAA     ").encode()
+    )
     assert "begins with M is needed; it has KAA, XAA" in text(whole.replace("MAA", "XAA").encode())
