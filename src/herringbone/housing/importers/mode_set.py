@@ -98,7 +98,7 @@ def mass_of_complex_mode(
     Args:
         modal_a: modal A of the complex shape.
         factor: of `real_shape`.
-        damped_w: damped angular frequency [rad/time].
+        damped_w: damped angular frequency [rad/time]; negative of a conjugate.
         where: named in the message.
 
     Raises:

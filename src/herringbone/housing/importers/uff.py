@@ -26,20 +26,25 @@ def read_uff(path: str | Path, seats: SeatFile) -> ModeSet:
     Args:
         path: the file.
         seats: its units are compared with those of data set 164; its nodes must be given in
-            global coordinates and directions.
+            global coordinates and directions, and its unit of time must be s.
 
     Raises:
         ResourceError: pyuff is missing, not readable, truncated, without nodes or modes, unscaled,
             complex, of two analyses, in local coordinates, or the units disagree.
     """
     path = Path(path)
+    if seats.time != 1.0:
+        raise ResourceError(
+            f"{seats.path}: a unit of time is {seats.time:g} s; frequencies of universal files are "
+            "in Hz, of whatever units the rest is: leave time out"
+        )
     sets = universal_sets(path, _KINDS)
     units = [s for s in sets if s.get("type") == 164]
     try:
         if units:
             _check_units(units[-1], seats)
         node, coordinates = _nodes(sets, seats)
-        modes = modes_of(sets)
+        modes = modes_of(sets, path)
         shapes = [in_order(node, mode.labels, mode.shape) for mode in modes]
     except ResourceError as error:
         raise ResourceError(f"{path}: {error}") from None
@@ -58,11 +63,10 @@ def read_uff(path: str | Path, seats: SeatFile) -> ModeSet:
 def _check_units(units: Mapping[str, Any], seats: SeatFile) -> None:
     length, force = 1.0 / units["length"], 1.0 / units["force"]  # of one unit, in SI
     mass = force / length  # the time unit of a universal file is 1 s
-    given = (seats.length, seats.mass, seats.time)
-    if not np.allclose(given, (length, mass, 1.0), rtol=_DIGITS):
+    if not np.allclose((seats.length, seats.mass), (length, mass), rtol=_DIGITS):
         raise ResourceError(
             f"data set 164 says that a unit of length is {length:g} m and of mass {mass:g} kg; "
-            f"{seats.path} says {seats.length:g} m, {seats.mass:g} kg, {seats.time:g} s"
+            f"{seats.path} says {seats.length:g} m, {seats.mass:g} kg"
         )
 
 

@@ -39,13 +39,17 @@ def _by_matrix(item: Mapping[str, Any]) -> dict[int, np.ndarray]:
 
 
 def _by_points(item: Mapping[str, Any]) -> dict[int, np.ndarray]:
-    """As `_by_matrix`, from the origin, a point on x and one in the x-z plane; of data set 18."""
-    names = ("cs_num", "cs_type", "ref_o", "x_point", "xz_point")
+    """As `_by_matrix`, from the origin, a point on x and one in the x-z plane; of data set 18.
+
+    NaN, too, where these are given in another system than the global one, 0.
+    """
+    names = ("cs_num", "cs_type", "ref_cs_num", "ref_o", "x_point", "xz_point")
     found = {}
-    for label, kind, origin, on_x, in_xz in zip(*(item[name] for name in names), strict=True):
+    rows = zip(*(item[name] for name in names), strict=True)
+    for label, kind, reference, origin, on_x, in_xz in rows:
         x = (on_x - origin) / np.linalg.norm(on_x - origin)
         y = np.cross(in_xz - origin, x)
         y /= np.linalg.norm(y)
         axes = np.vstack([x, y, np.cross(x, y), origin])
-        found[int(label)] = axes if kind == 0 else np.full((4, 3), np.nan)
+        found[int(label)] = axes if kind == reference == 0 else np.full((4, 3), np.nan)
     return found

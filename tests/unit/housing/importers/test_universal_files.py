@@ -1,6 +1,8 @@
 """Modes as universal files (55, 2414), read back to their digits."""
 
+import logging
 import re
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -36,8 +38,11 @@ def shape_sets(pyuff, frequency, shapes, *, mass=2.0, zeta=0.03, eta=0.0, nodes=
         ) | more  # fmt: skip
 
 
-def complex_sets(pyuff, frequency, shapes, angle, zeta=0.03):
-    """Shapes turned by `angle` [rad] each, with the modal A of unit modal mass."""
+def complex_sets(pyuff, frequency, shapes, angle, zeta=0.03, sign=1):
+    """Shapes turned by `angle` [rad] each, with the modal A of unit modal mass.
+
+    `sign` -1: their conjugates, `angle` then being that of these.
+    """
     turn = np.exp(1j * angle)
     for n, f in enumerate(frequency):
         w = 2 * np.pi * f
@@ -46,9 +51,9 @@ def complex_sets(pyuff, frequency, shapes, angle, zeta=0.03):
         yield pyuff.prepare_55(
             id1="NONE", id2="NONE", id3="NONE", id4="NONE", id5="NONE",
             model_type=1, analysis_type=3, data_ch=2, spec_data_type=8, data_type=5,
-            n_data_per_node=3, load_case=1, mode_n=n + 1, eig=-zeta * w + 1j * w_d,
-            modal_a=2j * w_d * np.mean(turn) ** 2, modal_b=0j, node_nums=np.arange(1, NODES + 1),
-            r1=turned[:, 0], r2=turned[:, 1], r3=turned[:, 2],
+            n_data_per_node=3, load_case=1, mode_n=n + 1, eig=-zeta * w + 1j * sign * w_d,
+            modal_a=2j * sign * w_d * np.mean(turn) ** 2, modal_b=0j,
+            node_nums=np.arange(1, NODES + 1), r1=turned[:, 0], r2=turned[:, 1], r3=turned[:, 2],
         )  # fmt: skip
 
 
@@ -90,6 +95,43 @@ def test_complex_modes_that_are_nearly_real(pyuff, write_uff, seats, model):
     np.testing.assert_allclose(np.abs(found.shapes), np.abs(shapes), rtol=2e-5, atol=1e-4)
     np.testing.assert_allclose(found.frequency, frequency, rtol=1e-5)
     np.testing.assert_allclose(found.damping_ratio, 0.03, rtol=1e-4)
+
+
+@pytest.mark.parametrize("signs", [(1, -1), (-1, 1), (-1,)])
+def test_pairs_of_conjugate_modes_are_one_mode(pyuff, write_uff, seats, model, signs):
+    frequency, shapes = modes_of(model)
+    each = [complex_sets(pyuff, frequency, shapes, 0.7 * s, sign=s) for s in signs]
+    found = read_uff(write_uff(*chain(*each)), read_seats(seats))
+    np.testing.assert_allclose(np.abs(found.shapes), np.abs(shapes), rtol=2e-5, atol=1e-4)
+    np.testing.assert_allclose(found.frequency, frequency, rtol=1e-5)
+    np.testing.assert_allclose(found.damping_ratio, 0.03, rtol=1e-4)
+
+
+def test_a_line_tells_modes_that_are_not_read(pyuff, write_uff, seats, model, caplog):
+    """Not of modes that are there as displacements, too."""
+    frequency, shapes = modes_of(model)
+    displacements = list(shape_sets(pyuff, frequency, shapes))
+    accelerations = list(shape_sets(pyuff, frequency, shapes, spec_data_type=12))
+    velocities = [item | {"analysis_type": 7} for item in complex_sets(pyuff, frequency, shapes, 0)]
+
+    def lines(*sets):
+        caplog.clear()
+        read_uff(write_uff(*sets), read_seats(seats))
+        return [record.getMessage() for record in caplog.records]
+
+    with caplog.at_level(logging.WARNING, logger="herringbone"):
+        assert lines(*displacements, *accelerations, *velocities) == []
+        said = lines(*displacements[:3], *accelerations[3:20], *velocities[20:])
+    assert "modes.unv: 17 data sets 55 of analysis type 2, specific data type 12, are" in said[0]
+    assert "modes.unv: 16 data sets 55 of analysis type 7, specific data type 8, are" in said[1]
+    assert len(said) == 2
+
+
+def test_frequencies_are_in_hz(pyuff, write_uff, seats, model):
+    seats.write_text(SEATS.replace('mass = "t"', 'mass = "t"\ntime = "ms"'))
+    path = write_uff(*shape_sets(pyuff, *modes_of(model)))
+    expected = "seats.toml: a unit of time is 0.001 s; frequencies of universal files are in Hz"
+    assert expected in refusal(lambda: load(path, seats))
 
 
 def test_complex_modes_are_refused(pyuff, write_uff, seats, model):
@@ -267,9 +309,9 @@ def system_2420(pyuff, label, matrix, kind=0):
     )  # fmt: skip
 
 
-def system_18(pyuff, label, axes, origin):
+def system_18(pyuff, label, axes, origin, reference=0):
     whole = {name: np.array([value]) for name, value in (
-        ("cs_num", label), ("cs_type", 0), ("ref_cs_num", 0), ("color", 1), ("method", 1),
+        ("cs_num", label), ("cs_type", 0), ("ref_cs_num", reference), ("color", 1), ("method", 1),
         ("ref_o", origin), ("x_point", origin + 2 * axes[0]),
         ("xz_point", origin + axes[0] + axes[2]),
     )}  # fmt: skip
@@ -285,6 +327,14 @@ def test_systems_that_are_the_global_one_or_not_used(pyuff, write_uff, model, se
         *shape_sets(pyuff, *modes_of(model)),
     )
     assert load(path, seats).frequency_hz.size == 3 * NODES
+
+
+def test_a_global_label_of_a_system_in_another_one(pyuff, write_uff, model, seats):
+    """Its points are as those of the global one, but in the coordinates of system 5."""
+    system = system_18(pyuff, 1, np.eye(3), np.zeros(3), reference=5)
+    path = write_uff(system, *shape_sets(pyuff, *modes_of(model)))
+    said = refusal(lambda: load(path, seats))
+    assert "node 1 is in the definition coordinate system 1, which data set 18 turns" in said
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.3])
