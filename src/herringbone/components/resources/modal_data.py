@@ -1,8 +1,13 @@
 """The two modal tables: frequencies with damping, and shapes at the seats; what is refused.
 
-Modes: columns mode, kind (normal, residual, rigid), frequency_hz [Hz], damping_ratio [1].
-Shapes: columns point, dof, then one column a mode [kg^-1/2], mass-normalised.
+Modes: columns mode (1, 2, ...), kind (normal, residual, rigid), frequency_hz [Hz] and
+damping_ratio [1].
+Shapes: columns point, dof, then one column a mode, m1, m2, ... [kg^-1/2], mass-normalised. Shapes
+are those of the modes in their order, so that other numbers are refused; the loader of FMUs does
+not see the names of the columns.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -25,7 +30,7 @@ MODE_COLUMNS = (
 _WIDTH = len(MODE_COLUMNS)
 _SHAPE_UNITS = ("kg^-1/2",)
 _SHAPE_HEADER, _NAMING = 3, 2
-_FREQUENCY, _DAMPING, _TOO_MANY, _OTHER_COUNT, _TWICE, _MISSING = range(1, 7)
+_NUMBER, _FREQUENCY, _DAMPING, _TOO_MANY, _OTHER_COUNT, _TWICE, _MISSING = range(1, 8)
 
 
 def shape_columns(dofs: Dofs) -> tuple[Column, ...]:
@@ -48,6 +53,7 @@ def wanted_rows(dofs: Dofs) -> np.ndarray:
 def refusals(dofs: Dofs, most: int) -> tuple[Refusal, ...]:
     """What `collect` may return."""
     return (
+        Refusal(", mode %g: its number is %g; give modes in the order 1, 2, ..."),
         Refusal(", mode %g: frequency %g Hz must be positive, and 0 if rigid"),
         Refusal(", mode %g: damping ratio %g must lie between 0 and 1"),
         Refusal(f": %g modes; at most {most}"),
@@ -66,6 +72,9 @@ def _check_modes(values: np.ndarray, modes: int, report: np.ndarray) -> int:
         at = _WIDTH * (mode + 1)
         kind, frequency_hz, damping_ratio = values[at + 1], values[at + 2], values[at + 3]
         report[0] = mode + 1
+        if values[at] != mode + 1:
+            report[1] = values[at]
+            return _NUMBER
         if frequency_hz < 0.0 or (frequency_hz == 0.0) != (kind == _RIGID):
             report[1] = frequency_hz
             return _FREQUENCY
@@ -96,8 +105,8 @@ def collect(
         report: numbers of a refusal.
 
     Returns:
-        0 or the number of a refusal (frequency or damping out of range, too many modes, numbers of
-        modes that differ, a row that stands twice or is missing).
+        0 or the number of a refusal (modes in another order, frequency or damping out of range, too
+        many modes, numbers of modes that differ, a row that stands twice or is missing).
     """
     modes, rows, columns = shape[0], shape[2], shape[3]
     refusal = _check_modes(values, modes, report)
@@ -140,7 +149,8 @@ def read_mode_table(modes: AnyPath) -> tuple[tuple[str, ...], np.ndarray, np.nda
         kind (n,), frequency_hz (n,) [Hz], damping_ratio (n,) [1].
 
     Raises:
-        ResourceError: see `read_numbers`; frequency or damping out of range.
+        ResourceError: see `read_numbers`; modes in another order, frequency or damping out of
+            range.
     """
     values, (count, width) = read_numbers(modes, MODE_COLUMNS)
     report = np.zeros(REPORT)
@@ -157,7 +167,8 @@ def read_shape_table(shapes: AnyPath) -> tuple[Dofs, np.ndarray]:
         (point, dof) of the d rows, and the shapes (d, n) [kg^-1/2].
 
     Raises:
-        ResourceError: see `read_flat_csv`; not mass-normalised, or a row stands twice.
+        ResourceError: see `read_flat_csv`; not mass-normalised, modes in another order, or a row
+            stands twice.
     """
     table, units = read_flat_csv(shapes, ("point", "dof"), {}, more="shape")
     check_units(units, {"shape": _SHAPE_UNITS}, shapes)
@@ -165,4 +176,14 @@ def read_shape_table(shapes: AnyPath) -> tuple[Dofs, np.ndarray]:
     if len(set(rows)) < len(rows):
         raise ResourceError(f"{shapes}: a point and dof stand twice")
     names = [name for name in table if name not in {"point", "dof"}]
+    check_mode_columns(names, shapes)
     return rows, np.array([table[name] for name in names]).reshape(len(names), len(rows)).T
+
+
+def check_mode_columns(names: Sequence[str], file: AnyPath) -> None:
+    """Refuse columns other than m1, m2, ... in this order; raises ResourceError."""
+    for n, name in enumerate(names, 1):
+        if name != f"m{n}":
+            raise ResourceError(
+                f"{file}: column '{name}' stands where 'm{n}' must: give modes as m1, m2, ..."
+            )

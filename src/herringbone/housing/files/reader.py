@@ -7,7 +7,11 @@ from typing import Any
 import numpy as np
 
 from herringbone.components.resources.flat_csv import read_flat_csv
-from herringbone.components.resources.modal_data import read_mode_table, read_shape_table
+from herringbone.components.resources.modal_data import (
+    check_mode_columns,
+    read_mode_table,
+    read_shape_table,
+)
 from herringbone.core import ResourceError
 from herringbone.core.places.files import is_folder
 from herringbone.core.reading.archives import open_archive
@@ -205,4 +209,8 @@ def _read_gram(file: AnyPath, hashes: Mapping[str, str]) -> np.ndarray | None:
     table, units = read_flat_csv(file, (), {"mode": ("1",)}, more="gram")
     if units.get("gram") != "kg^-1.m2":
         raise ResourceError(f"{file}: unit '{units.get('gram', 'none')}'; it must be kg^-1.m2")
-    return np.column_stack([values for name, values in table.items() if name != "mode"])
+    numbers = table.pop("mode")
+    check_mode_columns(list(table), file)
+    if (numbers != np.arange(1, numbers.size + 1)).any():
+        raise ResourceError(f"{file}: give rows in the order of mode 1, 2, ...")
+    return np.column_stack(list(table.values()))
