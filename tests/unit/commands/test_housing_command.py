@@ -2,11 +2,13 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.io
 import scipy.sparse as sp
+from support.files.fe_files import NODES, SEATS, frd_text
 from support.housing import small_housing
 
 from herringbone.commands import main as cli
@@ -138,3 +140,15 @@ def test_import(here, capsys):
     out = capsys.readouterr().out
     assert f"{1e-6 / expected[0, 0]:.0f}, " in out
     assert "Files: chain" in out
+
+
+def test_import_of_what_no_spring_holds(here, capsys):
+    """Rigid modes alone: seats have no static stiffness, and there is no warning of a division."""
+    Path("seats.toml").write_text(SEATS)
+    shapes = np.random.default_rng(1).standard_normal((NODES, 3, 3))
+    Path("free.frd").write_text(frd_text(np.zeros(3), shapes, np.eye(NODES, 3)))
+    command = ["housing", "import", "free.frd", "--seats", "seats.toml", "-o", "free"]
+    assert cli.main([*command, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["static_stiffness_N_per_um"] == [None] * 12
+    assert cli.main(command) == 0
+    assert "of each seat [N/um]: none, none, " in capsys.readouterr().out

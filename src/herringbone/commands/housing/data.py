@@ -158,12 +158,12 @@ def import_command(options: argparse.Namespace) -> int:
             progress=bar.set_description_str,
         )
     _write(housing, output)
-    stiffness = 1e-6 / np.diag(housing.static_compliance())
+    compliance = np.diag(housing.static_compliance()).tolist()
     figures = {
         "oscillators": housing.frequency_hz.size,
         "normal_modes": housing.kind.count("normal"),
         "frequency_hz": housing.frequency_hz[:8].tolist(),
-        "static_stiffness_N_per_um": stiffness.tolist(),
+        "static_stiffness_N_per_um": [1e-6 / c if c > 0.0 else None for c in compliance],
         "valid_to_hz": housing.valid_to_hz,
         "error_bound": housing.certificate.get("error_bound"),
         "files": [str(output)],
@@ -180,7 +180,9 @@ def _import_text(figures: dict) -> str:
         f"good to {figures['valid_to_hz']:g} Hz{certified}",
         "Lowest [Hz]: " + ", ".join(f"{f:.2f}" for f in figures["frequency_hz"]),
         "Static stiffness x, y, z of each seat [N/um]: "
-        + ", ".join(f"{k:.0f}" for k in figures["static_stiffness_N_per_um"]),
+        + ", ".join(
+            "none" if k is None else f"{k:.0f}" for k in figures["static_stiffness_N_per_um"]
+        ),
         "Files: " + ", ".join(figures["files"]),
     ])  # fmt: skip
 

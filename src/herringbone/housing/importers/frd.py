@@ -1,7 +1,7 @@
 """Importer of CalculiX result files (.frd) with the modes of a *FREQUENCY step.
 
-The step needs *NODE FILE with U. Frequencies are taken from the generalised stiffness and mass
-(7 digits) where the file has them, else from the result's header (6 digits).
+The step needs *NODE FILE with U. Frequencies are taken from the generalised stiffness and mass (7
+digits), of which the result's header has 6 and no sign.
 
 Source: CalculiX CrunchiX user's manual, *FREQUENCY; CalculiX GraphiX manual, result format.
 """
@@ -76,7 +76,7 @@ def _parse(lines: list[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
                     raise ResourceError("the modes are complex or have no generalised mass")
                 mass = check_modal_mass(header["1PGM"], f"mode {len(shapes) + 1}")
                 numbers.append(int(header.get("1PMODE", 0)))
-                frequencies.append(_frequency(header["1PGK"] / mass, number(line[12:24])))
+                frequencies.append(_frequency(header["1PGK"] / mass))
                 shapes.append(in_order(node, at, values) / math.sqrt(mass))
             header.clear()
     if not shapes:
@@ -93,8 +93,9 @@ def _label_width(line: str) -> int:
     return _LABEL_WIDTHS[number]
 
 
-def _frequency(square: float, header: float) -> float:
-    return math.sqrt(square) / (2.0 * math.pi) if square > 0.0 else header
+def _frequency(square: float) -> float:
+    """Frequency from the square of w; negative where that is, of which the header does not tell."""
+    return math.copysign(math.sqrt(abs(square)), square) / (2.0 * math.pi)
 
 
 def _block(lines: Iterator[str], width: int) -> tuple[np.ndarray, np.ndarray]:

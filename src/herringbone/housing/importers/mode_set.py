@@ -16,6 +16,8 @@ _COLLINEAR = 0.95
 _REAL = 0.1
 """Largest imaginary part of a complex mode's modal mass, over its real part."""
 _RIGID_HZ = 1e-3
+_ROUNDING = 1e-4
+"""A negative frequency that is rounding of zero, over the highest frequency."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +27,7 @@ class ModeSet:
     Attributes:
         node: (k,) labels.
         coordinates: (k, 3) [length].
-        frequency: (n,) [1/time].
+        frequency: (n,) [1/time]; negative where the modal stiffness is.
         damping_ratio: (n,) [1]; NaN where the file does not tell.
         shapes: (k, 3, n) [mass^-1/2]; NaN where a mode leaves a node out.
         source: what made them.
@@ -128,8 +130,10 @@ def housing_from_modes(modes: ModeSet, seats: SeatFile) -> ModalHousing:
     """Take the mean motion of the seats' and sensors' nodes, in SI units and the gearbox frame.
 
     Raises:
-        ResourceError: a node is missing, has no shape in a mode, or a mode stands twice.
+        ResourceError: a node is missing, has no shape in a mode, a mode stands twice, or has a
+            negative stiffness.
     """
+    _check_stiff(modes.frequency / seats.time, modes.source["file"])
     check_no_mode_twice(modes.frequency, modes.shapes, modes.source["file"])
     rows = {int(label): i for i, label in enumerate(modes.node)}
     points, shapes = [], []
@@ -161,6 +165,16 @@ def housing_from_modes(modes: ModeSet, seats: SeatFile) -> ModalHousing:
         {**modes.source, **({"description": seats.source} if seats.source else {})},
         make_frame(seats),
     )
+
+
+def _check_stiff(frequency_hz: np.ndarray, file: str) -> None:
+    """Refuse a mode that would run away; taken as a rigid one, its stiffness would be zero."""
+    lowest = int(np.argmin(frequency_hz))
+    if frequency_hz[lowest] < -max(_RIGID_HZ, _ROUNDING * frequency_hz.max()):
+        raise ResourceError(
+            f"{file}: mode {lowest + 1} has the frequency {frequency_hz[lowest]:g} Hz, below zero: "
+            "its stiffness is negative, as of a structure that has buckled under its preload"
+        )
 
 
 def _check_complete(modes: ModeSet, at: list[int], selection: Selection, seats: SeatFile) -> None:

@@ -101,6 +101,21 @@ def test_two_steps_of_different_modes(tmp_path, seats, model):
     assert "two analyses would be added up: keep one step" in text
 
 
+def test_negative_stiffness(frd, seats, model):
+    """The header has the size alone; what rounding leaves of a rigid mode is zero."""
+    frequency = modes_of(model)[0]
+    path = frd()
+    square = f"{(2 * np.pi * frequency[0]) ** 2:12.6E}"
+    whole = path.read_text()
+    path.write_text(whole.replace(square, f"-{square}", 1))
+    said = f"modes.frd: mode 1 has the frequency -{frequency[0]:.3f}"[:-2]
+    assert said in refusal(lambda: load(path, seats))
+    small = (2 * np.pi * 0.5e-4 * frequency[-1]) ** 2
+    path.write_text(whole.replace(square, f"-{small:12.6E}", 1))
+    housing = load(path, seats)
+    assert (housing.kind[0], housing.frequency_hz[0]) == ("rigid", 0.0)
+
+
 def test_static_compliance_completes_few_modes(tmp_path, seats, model):
     """Eight of 36 modes with the exact statics: pseudo modes carry the rest, positive."""
     frequency, shapes = modes_of(model)

@@ -127,6 +127,11 @@ def test_a_line_tells_modes_that_are_not_read(pyuff, write_uff, seats, model, ca
     assert len(said) == 2
 
 
+def test_frequencies_below_zero(pyuff, write_uff, seats, model):
+    path = write_uff(*shape_sets(pyuff, *modes_of(model), freq=-10.0, mode_n=0))
+    assert "mode 1 has the frequency -10 Hz, below zero" in refusal(lambda: load(path, seats))
+
+
 def test_frequencies_are_in_hz(pyuff, write_uff, seats, model):
     seats.write_text(SEATS.replace('mass = "t"', 'mass = "t"\ntime = "ms"'))
     path = write_uff(*shape_sets(pyuff, *modes_of(model)))
