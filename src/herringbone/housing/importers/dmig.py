@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -31,6 +32,14 @@ _CP, _CD = 2, 6
 _BARE_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
 
 
+class _Matrix(NamedTuple):
+    """Form, type, and elements by row and column."""
+
+    form: int
+    kind: int
+    elements: dict[tuple[Row, Row], float]
+
+
 def read_dmig(path: str | Path) -> MatrixModel:
     """Read a stiffness matrix (name begins with K) and a mass matrix (name begins with M).
 
@@ -40,25 +49,23 @@ def read_dmig(path: str | Path) -> MatrixModel:
     """
     path = Path(path)
     text = read_text(path, most=LARGEST_MODEL, ascii_only=True)
-    entries: dict[str, dict[tuple[Row, Row], float]] = {}
+    matrices: dict[str, _Matrix] = {}
     grids: list[list[str]] = []
     default: list[str] = []
     try:
         for card in _cards(text):
             if card[0] == "DMIG":
-                _read_dmig(card[1:], entries)
+                _read_dmig(card[1:], matrices)
             elif card[0] == "GRID":
                 grids.append(card)
             else:
                 default = card
         coordinates = _coordinates(grids, default)
-        for name, matrix in entries.items():
-            _check_symmetric(matrix, name)
     except ResourceError as error:
         raise ResourceError(f"{path}: {error}") from None
     except (ValueError, IndexError) as error:
         raise ResourceError(f"{path}: a DMIG, GRDSET or GRID card is malformed: {error}") from error
-    stiffness, mass = (entries[only_name(list(entries), letter, path)] for letter in "KM")
+    stiffness, mass = (_symmetric(matrices, letter, path) for letter in "KM")
     rows = sorted({row for matrix in (stiffness, mass) for pair in matrix for row in pair})
     return MatrixModel(
         _assemble(stiffness, rows), _assemble(mass, rows), tuple(rows), coordinates, None,
@@ -127,39 +134,52 @@ def _coordinates(grids: list[list[str]], default: list[str]) -> dict[int, np.nda
     return found
 
 
-def _read_dmig(fields: list[str], entries: dict[str, dict[tuple[Row, Row], float]]) -> None:
+def _read_dmig(fields: list[str], matrices: dict[str, _Matrix]) -> None:
+    """Header or elements; of matrices that are neither stiffness nor mass the name alone."""
     name = fields[0].upper()
     if fields[1] == "0":
-        form, kind = _integer(fields[2]), _integer(fields[3])
-        if form != _SYMMETRIC or kind not in _REAL:
-            raise ResourceError(
-                f"DMIG {name} has form {form}, type {kind}; form 6 (symmetric) and type 1 or 2 "
-                "(real) are read"
-            )
-        entries.setdefault(name, {})
+        matrices.setdefault(name, _Matrix(_integer(fields[2]), _integer(fields[3]), {}))
         return
-    if name not in entries:
+    if name not in matrices:
         raise ResourceError(f"DMIG {name} has no header card (second field 0)")
+    if not name.startswith(("K", "M")):
+        return
+    elements = matrices[name].elements
     column = (whole(fields[1]), _integer(fields[2]))
     for at in range(4, len(fields) - 2, 4):
         if fields[at]:
             row = (whole(fields[at]), _integer(fields[at + 1]))
-            if (row, column) in entries[name]:
+            if (row, column) in elements:
                 raise ResourceError(f"DMIG {name}: {_element(row, column)} is given twice")
-            entries[name][row, column] = _real(fields[at + 2])
+            elements[row, column] = _real(fields[at + 2])
+
+
+def _symmetric(
+    matrices: dict[str, _Matrix], letter: str, path: Path
+) -> dict[tuple[Row, Row], float]:
+    """Elements of the one matrix that begins with a letter; raises ResourceError if not usable."""
+    name = only_name(list(matrices), letter, path)
+    form, kind, elements = matrices[name]
+    if form != _SYMMETRIC or kind not in _REAL:
+        raise ResourceError(
+            f"{path}: DMIG {name} has form {form}, type {kind}; form 6 (symmetric) and type 1 or 2 "
+            "(real) are read"
+        )
+    _check_symmetric(elements, f"{path}: DMIG {name}")
+    return elements
 
 
 def _element(row: Row, column: Row) -> str:
     return f"the element in row {row[0]},{row[1]} and column {column[0]},{column[1]} (grid,axis)"
 
 
-def _check_symmetric(matrix: dict[tuple[Row, Row], float], name: str) -> None:
+def _check_symmetric(matrix: dict[tuple[Row, Row], float], where: str) -> None:
     """Refuse elements that are given on both sides of the diagonal and differ."""
     for (row, column), value in matrix.items():
         other = matrix.get((column, row), value)
         if not math.isclose(value, other, rel_tol=_SAME):
             raise ResourceError(
-                f"DMIG {name}: {_element(row, column)} is {value:g}, its transpose {other:g}; "
+                f"{where}: {_element(row, column)} is {value:g}, its transpose {other:g}; "
                 "form 6 is symmetric: give one of them"
             )
 

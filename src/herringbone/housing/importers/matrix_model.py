@@ -53,8 +53,13 @@ class MatrixModel:
 
 
 def only_name(names: Sequence[str], letter: str, path: Path) -> str:
-    """The one matrix whose name begins with a letter: K is stiffness, M mass."""
+    """The one matrix whose name begins with a letter: K is stiffness, M mass.
+
+    Beside another one that begins with K, K4 is the structural damping of Nastran.
+    """
     found = [name for name in names if name.startswith(letter)]
+    if len(found) > 1:
+        found = [name for name in found if not name.startswith("K4")]
     if len(found) != 1:
         raise ResourceError(
             f"{path}: one matrix whose name begins with {letter} is needed; "

@@ -74,6 +74,22 @@ def test_coordinate_systems_of_grids(dmig, model):
     np.testing.assert_allclose(read_dmig(path).coordinates[1], model[2][0], rtol=6e-10)
 
 
+def test_other_matrices_of_a_punch_file(dmig, model):
+    """Damping K4, loads (form 9) and complex ones that a superelement has are passed over."""
+    path = dmig()
+    whole = path.read_text()
+    others = [
+        "DMIG,PAX,0,9,2,0,,,1", "DMIG,PAX,1,0,,1,1,1.0", "DMIG,PAX,1,0,,1,1,1.0",
+        "DMIG,K4AAX,0,6,2,0", "DMIG,K4AAX,1,1,,1,1,5.0", "DMIG,BAAX,0,1,4,0",
+    ]  # fmt: skip
+    path.write_text("\n".join([*others, whole]))
+    found = read_dmig(path)
+    for matrix, expected in zip((found.stiffness, found.mass), model[:2], strict=True):
+        np.testing.assert_allclose(matrix.toarray(), expected, rtol=6e-10)
+    path.write_text("DMIG,KBBX,0,6,2,0\n" + whole)
+    assert "one matrix whose name begins with K is needed" in refusal(lambda: read_dmig(path))
+
+
 FORM_6 = """DMIG,K,0,6,2,0
 DMIG,K,1,1,,1,1,3.+8
 ,2,1,-2.+8
