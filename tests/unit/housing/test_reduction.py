@@ -143,11 +143,36 @@ def test_refusals():
     assert "mass matrix has a negative diagonal" in refused(mass=-mass)
     assert "value that is not finite" in refused(mass=np.nan * mass)
     assert "empty column" in refused(seat_input=0.0 * seats)
-    vanishing = mass.tolil()
-    vanishing[5, 5] = 1e-320
-    assert "lie between 1e-320 and" in refused(mass=vanishing.tocsr())
+    indefinite = mass.tolil()
+    indefinite[3, 7] = indefinite[7, 3] = 2.0
+    assert "mass matrix is not positive definite" in refused(mass=indefinite.tocsr())
     text = refused(band_hz=9000.0, most_modes=40)
     assert "28 modes, to 5655 Hz, do not certify 9000 Hz within 0.05" in text
+
+
+@pytest.mark.parametrize("size", [240, 1500])
+@pytest.mark.parametrize("light", [0.0, 1e-320])
+def test_unknowns_without_mass_are_as_if_condensed(size, light):
+    """Two springs in a row, however many unknowns there are; rounding as of kept models."""
+    stiffness, mass, seats = bar(size)
+    massless = mass.tolil()
+    massless[5, 5] = light
+    keep = np.delete(np.arange(size), 5)
+    column = stiffness[keep][:, [5]]
+    condensed = stiffness[keep][:, keep] - column @ column.T / stiffness[5, 5]
+    found = reduce_model(stiffness, massless.tocsr(), seats, band_hz=BAND)
+    expected = reduce_model(condensed.tocsr(), mass[keep][:, keep], seats[keep], band_hz=BAND)
+    np.testing.assert_allclose(found.frequency_hz, expected.frequency_hz, rtol=1e-9)
+    np.testing.assert_allclose(found.static, expected.static, rtol=1e-9)
+    assert found.error_bound == pytest.approx(expected.error_bound, rel=1e-6)
+
+
+def test_too_few_unknowns_with_mass():
+    stiffness, mass, seats = bar(40)
+    massless = mass.tolil()
+    massless[1, 1] = 0.0
+    with pytest.raises(HerringboneError, match="40 unknowns have 39 modes with mass, too few"):
+        reduce_model(stiffness, massless.tocsr(), seats, band_hz=1e5)
 
 
 def as_housing(found, valid_to_hz: float) -> ModalHousing:

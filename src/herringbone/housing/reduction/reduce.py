@@ -38,6 +38,8 @@ from herringbone.housing.reduction.residual import residual_modes
 _FIRST_COUNT = 30
 _DENSE = 600
 """Up to this size the whole eigenproblem is solved at once."""
+_MASSLESS = 1e-12
+"""1 / w^2 that is rounding of zero, over the largest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +152,11 @@ def _enough_modes(
         chosen = choose_modes(modes.frequency_hz, seat_shapes, static, goal.band_hz, goal.tolerance)
         if chosen:
             return modes, *chosen
+        if modes.frequency_hz.size < count:
+            raise HerringboneError(
+                f"{size} unknowns have {modes.frequency_hz.size} modes with mass, too few for "
+                f"{goal.band_hz:g} Hz; give every degree of freedom a mass, or condense it"
+            )
         if count == size:
             return modes, size, 0.0
         if count == last:
@@ -165,16 +172,29 @@ def _modes(model: HeldModel, count: int, factorisation: Factorisation) -> Modes:
     stiffness, mass, _ = model
     if stiffness.shape[0] > max(_DENSE, count):  # the sparse solver cannot find all
         return eigenmodes(stiffness, mass, count, factorisation=factorisation)
+    return _dense_modes(stiffness.toarray(), mass.toarray(), count)
+
+
+def _dense_modes(stiffness: np.ndarray, mass: np.ndarray, count: int) -> Modes:
     try:
-        squares, shapes = la.eigh(
-            stiffness.toarray(), mass.toarray(), subset_by_index=(0, count - 1)
-        )
-    except la.LinAlgError as error:
-        raise HerringboneError("the mass matrix is not positive definite") from error
+        squares, shapes = la.eigh(stiffness, mass, subset_by_index=(0, count - 1))
+    except la.LinAlgError:
+        return _modes_beside_massless(stiffness, mass, count)
     if squares.size < count or not np.isfinite(squares).all():
-        least, most = mass.diagonal().min(), mass.diagonal().max()
-        raise HerringboneError(
-            f"not all {count} modes are found: entries of the mass matrix lie between {least:.3g} "
-            f"and {most:.3g} kg; give every degree of freedom a mass, or condense it"
-        )
+        return _modes_beside_massless(stiffness, mass, count)
     return Modes(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * math.pi), shapes)
+
+
+def _modes_beside_massless(stiffness: np.ndarray, mass: np.ndarray, count: int) -> Modes:
+    """Modes of M x = K x / w^2, at most `count`: where an unknown has no mass, 1 / w^2 is zero."""
+    try:
+        inverse, shapes = la.eigh(mass, stiffness)  # x^T K x = 1
+    except la.LinAlgError as error:
+        raise HerringboneError("the stiffness matrix is not positive definite") from error
+    inverse, shapes = inverse[::-1], shapes[:, ::-1]
+    rounding = _MASSLESS * inverse[0]
+    if inverse[-1] < -rounding:
+        raise HerringboneError("the mass matrix is not positive definite")
+    known = min(count, int((inverse > rounding).sum()))
+    root = np.sqrt(inverse[:known])
+    return Modes(1.0 / (2.0 * math.pi * root), shapes[:, :known] / root)
