@@ -109,20 +109,12 @@ static int hex_digit(char c) {
                                   : -1;
 }
 
-/* Schemes of URIs have no case (RFC 3986, section 3.1). */
-static bool is_file_uri(const char *location) {
-    for (const char *scheme = "file:"; *scheme; scheme++, location++)
-        if ((*location | 0x20) != *scheme)
-            return false;
-    return true;
-}
-
 char *platform_path(const char *location) {
     size_t length = strlen(location);
     char *path = malloc(length + 1);
     if (!path)
         return NULL;
-    if (!is_file_uri(location))
+    if (strncmp(location, "file:", 5) != 0)
         return memcpy(path, location, length + 1);
     const char *from = location + 5;
     if (strncmp(from, "//", 2) == 0) { /* an authority, empty or a host, ends at a slash */
