@@ -56,8 +56,8 @@ def swap(text: str, old: str, new: str) -> str:
 
 
 BAD_MODES = [
-    ("1,rigid", "2,rigid", "mode 1: its number is 2; give modes in the order 1, 2, ..."),
-    ("3,residual", "2,residual", "mode 3: its number is 2; give modes in the order 1, 2, ..."),
+    ("1,rigid", "2,rigid", "mode 1 has the number 2; sort the modes"),
+    ("3,residual", "2,residual", "mode 3 has the number 2; sort the modes"),
     ("2,normal", "2,elastic", "kind 'elastic' is none of normal, residual, rigid"),
     ("normal,250.5", "normal,0", "mode 2: frequency 0 Hz must be positive, and 0 if rigid"),
     ("normal,250.5", "normal,-3", "mode 2: frequency -3 Hz must be positive"),

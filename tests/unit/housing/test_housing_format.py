@@ -195,7 +195,7 @@ BAD_FILES = [
     ("surface_gram.csv", "mode,m1,m2", "mode,m2,m1", "surface_gram.csv: column 'm2' stands where"),
     ("surface_gram.csv", "\n2,", "\n3,", "surface_gram.csv: give rows in the order of mode 1, 2"),
     ("shapes.csv", "m1,m2", "m2,m1", "shapes.csv: column 'm2' stands where 'm1' must: give"),
-    ("modes.csv", "\n2,", "\n3,", "modes.csv, mode 2: its number is 3; give modes in the order 1"),
+    ("modes.csv", "\n2,", "\n3,", "modes.csv, mode 2 has the number 3; sort the modes"),
     ("shapes.csv", "A,z", "B,z", "shapes.csv: rows are missing for A z"),
     ("modes.csv", "20,residual", "20,residual,", "modes.csv, line 22: 5 fields, 4 expected"),
 ]

@@ -24,6 +24,8 @@ _SHORTER, _ALIKE = 8.0, 0.1
 _SPEED = "rad/s"
 _SLOW, _UNLIKE = 1.0, 0.05
 """Speed [rad/s] that is rest, and share of a speed by which another one is alike."""
+UNSTABLE_STEP = "is unstable at a step of"
+"""What a line on an unstable step says of its algorithm."""
 _FEW = 3.0
 """Powers of e up to which growth is told in percent."""
 
@@ -68,7 +70,7 @@ def warn_if_unstable(
             f"{hertz(growth.frequency)} {_in_time(growth, step, duration)}, whatever the step"
         )
     return (
-        f"{algorithm} is unstable at a step of {step:g} s: a motion at {hertz(growth.frequency)} "
+        f"{algorithm} {UNSTABLE_STEP} {step:g} s: a motion at {hertz(growth.frequency)} "
         f"grows by {percent(growth.radius - 1.0, 3)} per step, "
         f"{_in_time(growth, step, duration)}{_elsewhere(strangers)}; 'herringbone stability' shows "
         "the limits"

@@ -53,7 +53,7 @@ def wanted_rows(dofs: Dofs) -> np.ndarray:
 def refusals(dofs: Dofs, most: int) -> tuple[Refusal, ...]:
     """What `collect` may return."""
     return (
-        Refusal(", mode %g: its number is %g; give modes in the order 1, 2, ..."),
+        Refusal(", mode %g has the number %g; sort the modes"),
         Refusal(", mode %g: frequency %g Hz must be positive, and 0 if rigid"),
         Refusal(", mode %g: damping ratio %g must lie between 0 and 1"),
         Refusal(f": %g modes; at most {most}"),

@@ -52,6 +52,8 @@ MOST_SWEEPS = 1000
 """Sweeps of a fixed point over an algebraic loop at the most."""
 PATIENCE = 50
 """Macro steps between two Jacobians at the least."""
+APART = "corrections the forces still differed"
+"""What a line on corrections that did not meet says."""
 
 
 class PreparedNodes(PreparedRun):
@@ -138,7 +140,7 @@ class PreparedNodes(PreparedRun):
             return said  # of values that are not finite the outcome tells
         return (
             *said,
-            f"after {self.most} corrections the forces still differed by up to {left:.2g} of the "
+            f"after {self.most} {APART} by up to {left:.2g} of the "
             "largest: use a smaller step, or look for a part that does not repeat a step alike",
         )
 

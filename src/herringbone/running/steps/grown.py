@@ -1,7 +1,9 @@
 """A run that has grown beyond one with shorter steps: unstable, though it reached its end.
 
 The energy of a coupling is watched where elements damp at the start; nothing damps in a clearance,
-and foreign parts may have other names. What half the step gives tells it then.
+and foreign parts may have other names. What half the step gives tells it then. Nor does energy grow
+without end where a motion of an unstable coupling comes to rest in a cycle, as where teeth part and
+corrections no longer meet: these tell it, where the step was told to be unstable before.
 """
 
 from collections.abc import Collection
@@ -9,8 +11,10 @@ from dataclasses import replace
 
 from herringbone.analysis.accuracy.apart import Outgrown, outgrown
 from herringbone.analysis.figures.settling import NOT_SETTLED
+from herringbone.analysis.stability.instability import UNSTABLE_STEP
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.core.wording import percent
+from herringbone.cosim.algorithms.iterated import APART
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 
@@ -52,9 +56,10 @@ def with_doubt(result: Result, system: System) -> Result:
         system: of the run.
     """
     info, known = result.info, result.verification
-    coupled = bool(system.foreign_parts and system.connections)
-    if not coupled or info.steps or not result.outcome.ended_well:
+    if not system.connections or info.steps or not result.outcome.ended_well:
         return result
+    if not system.foreign_parts:
+        return _in_a_cycle(result)
     seen = "the energy of the coupling is not watched, as no element was seen to damp, and"
     if info.energy is not None:
         seen = "no energy was seen to grow by the coupling, but"
@@ -69,6 +74,23 @@ def with_doubt(result: Result, system: System) -> Result:
         f"{seen} the error by other steps is {percent(known.error)}: the coupling may be unstable, "
         f"or the motion chaotic; compare with a step below {info.communication_step:g} s"
     )
+
+
+def _in_a_cycle(result: Result) -> Result:
+    """The result, ended as unstable if its step was told to be, and corrections did not meet."""
+    lines = result.info.notes
+    if not all(any(told in line for line in lines) for told in (UNSTABLE_STEP, APART)):
+        return result
+    time = result.outcome.time
+    message = (
+        f"ran to {time:.4g} s, but its step was told to be unstable, and corrections of the forces "
+        f"did not meet: the motion is one of the coupling; use a step below "
+        f"{result.info.communication_step:g} s or an algorithm with a higher limit"
+    )
+    outcome = Outcome(OutcomeKind.UNSTABLE, time, message=message)
+    result = _without_settling(result)
+    info = replace(result.info, energy=None)  # that of a cycle does not grow, which is not "fine"
+    return replace(result, outcome=outcome, budget=(), info=info)
 
 
 def _without_settling(result: Result) -> Result:

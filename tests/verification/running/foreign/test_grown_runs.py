@@ -75,3 +75,16 @@ def test_a_line_where_the_error_is_that_of_whole_signals(system):
         ).info.notes
         assert any("error by other steps is 974 %: the coupling may be" in n for n in notes) is told
         assert any(note.startswith(NOT_SETTLED) for note in notes) is not told
+
+
+def test_a_cycle_of_an_unstable_coupling_is_told():
+    """Its energy does not grow any more: a step told to be unstable, with corrections apart."""
+    found = hb.run("test_rig", algorithm="li:degree=3", t_end=1e-3, fmu="in-process")
+    system = read_system("test_rig")
+    lines = ("li is unstable at a step of 0.001 s", "after 6 corrections the forces still differed")
+    for count, kind in ((1, "completed"), (2, "unstable")):
+        ended = replace(found, info=replace(found.info, notes=lines[:count]))
+        assert with_doubt(ended, system).outcome.kind == kind
+    told = with_doubt(ended, system)
+    assert told.info.energy is None
+    assert not told.budget

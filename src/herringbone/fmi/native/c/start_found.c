@@ -7,8 +7,8 @@ void hb_start_found(Instance *instance) {
         return;
     Message message;
     message_write(&message,
-                  "%s: %s is set to %g, but the start is searched, where it is %g; states that are "
-                  "set count with start_mode = as_set alone",
+                  "%s: %s = %g is dropped: the start is searched, at %g; "
+                  "start_mode = as_set keeps it",
                   instance->name, real_name(state), message_number(instance->set_to),
                   message_number(instance->block[state]));
     log_write(&instance->log, STATUS_WARNING, &message);
