@@ -16,6 +16,7 @@ from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.run import Progress, Run
+from herringbone.cosim.starting.approached_part import approached_of
 from herringbone.cosim.starting.initialisation import initialise
 from herringbone.cosim.starting.speeds import unlike_inside, unlike_speeds
 from herringbone.cosim.starting.values import start_offsets
@@ -142,6 +143,9 @@ def ready(
     for part, degree in zip(parts, prepared.degree, strict=True):
         if INTERFACE_DEGREE in part.variables:
             part.set(INTERFACE_DEGREE, float(degree))
+    for p, part in enumerate(parts):
+        if before := approached_of(part):
+            before.step_alike(network.slow.get(p, 1) * grid.step, prepared.held_at(p))
     watch = EnergyWatch(network, prepared, grid.step, bond_frequency)
     others = OtherSignals(network)
     loop = initialise(network, prepared.degree, grid.step * grid.count, watch, others, tolerance)

@@ -33,6 +33,7 @@ from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.prepared_runs import Heard, coupled_run, fused_run
 from herringbone.running.reporting.progress import Progress
+from herringbone.running.settling.held import Wanted
 from herringbone.scenes import Scene
 
 
@@ -173,6 +174,7 @@ def run(
             check=lambda scene: _check_times(scene, step),
             remarked=remarked,
             trial_step=(step or (coupling or LI()).start_step) if probe else None,
+            wanted=Wanted(coupling, step),
         )
         by_hand = said_by_hand(system, scene, wishes, Point(speed, torque))
         notes, left_out = notes + by_hand.notes, by_hand.row or certified_row(chosen.model)

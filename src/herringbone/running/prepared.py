@@ -17,6 +17,7 @@ from herringbone.running.operating.lean import refuse_lean
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.pairs.impacts import with_impacts
 from herringbone.running.pairs.open_flanges import balanced, unbalanced
+from herringbone.running.settling.held import NOT_WANTED, Wanted
 from herringbone.running.start import started
 from herringbone.scenes import Scene
 
@@ -71,6 +72,7 @@ def prepared(
     check: Callable[[Scene], None] = lambda scene: None,
     remarked: Callable[[HousingRemarks], None] = lambda remarks: None,
     trial_step: float | None = None,
+    wanted: Wanted = NOT_WANTED,
 ) -> Prepared:
     """Load a system and a scene, and set what is wished.
 
@@ -82,7 +84,7 @@ def prepared(
         wishes: over these.
         check: called with the scene before anything takes long.
         remarked: called with what is to be said of an FMU that replaces a housing.
-        trial_step: see `started`.
+        trial_step, wanted: see `started`.
 
     Raises:
         HerringboneError: something about the input is wrong.
@@ -101,7 +103,7 @@ def prepared(
     structure = balanced(found.system)
     lines = (*unbalanced(structure), *driven_one_way(structure))
     try:
-        structure, notes = started(structure, chosen, trial_step)
+        structure, notes = started(structure, chosen, trial_step, wanted)
     except EquilibriumError as error:
         lines = (*lines, *implausible_housings(structure))
         raise EquilibriumError("; ".join((*lines, str(error)))) from error

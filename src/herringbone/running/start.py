@@ -9,6 +9,7 @@ from herringbone.core import EquilibriumError, ParameterError
 from herringbone.core.names import first_of
 from herringbone.core.process.activity import activity
 from herringbone.core.wording import option, setting
+from herringbone.cosim.structure.approach import Approach
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.gradual.fitted import fitted_ramp
 from herringbone.running.gradual.raised import Raised, raised
@@ -16,6 +17,7 @@ from herringbone.running.gradual.ramp import LOAD_RAMP_TIME, ramp_times, ramps, 
 from herringbone.running.known_parts import known_parts
 from herringbone.running.remembered_answers import start_of_known
 from herringbone.running.settling.flanks import loaded_settled_start
+from herringbone.running.settling.held import NOT_WANTED, Wanted
 from herringbone.running.settling.stranger import NoSettledStartError
 from herringbone.scenes import Scene, Start
 
@@ -27,7 +29,7 @@ _SHOWN = 3
 
 
 def started(
-    system: System, scene: Scene, trial_step: float | None = None
+    system: System, scene: Scene, trial_step: float | None = None, wanted: Wanted = NOT_WANTED
 ) -> tuple[System, tuple[str, ...]]:
     """The system with a scene's values and start values set, and lines that the user should read.
 
@@ -36,6 +38,7 @@ def started(
         scene: with the start that is asked for.
         trial_step: of the trials that tell what foreign parts are [s]; None: they are not tried,
             and start as they declare.
+        wanted: of the coupling.
 
     Raises:
         HerringboneError: a value is wrong, or there is no equilibrium.
@@ -49,7 +52,7 @@ def started(
         why = "the equilibrium is not known"
         if trial_step is not None:
             try:
-                system, lines = _settled(system, trial_step)
+                system, lines = _settled(system, trial_step, wanted)
             except NoSettledStartError as error:
                 why = f"no equilibrium is known ({error})"
             else:
@@ -104,17 +107,17 @@ def _gradual(system: System, scene: Scene, trial_step: float | None) -> tuple[Sy
     )
 
 
-def _settled(system: System, step: float) -> tuple[System, tuple[str, ...]]:
+def _settled(system: System, step: float, wanted: Wanted) -> tuple[System, tuple[str, ...]]:
     """The system in equilibrium with its foreign parts, and lines; raises NoSettledStartError."""
     with activity(f"looking for the steady rotation of {system.name} with foreign parts"):
-        found, lines = loaded_settled_start(system, known_parts(system), step)
+        found, lines = loaded_settled_start(system, known_parts(system), step, wanted)
     lines += _dropped(system, found.values)
     for name, way in found.approaches.items():
         if not way.duration:
             continue
         lines.append(
             f"{name}: foreign; it is stepped over {way.duration:g} s before the start, under what "
-            "it is given in the steady rotation in which the run begins"
+            f"it is given in the steady rotation in which the run begins{_stepping(way)}"
         )
     lines += [
         f"{path} pulsates by +-{swing:.3g} as its shaft turns: the run starts with its mean, and "
@@ -141,6 +144,13 @@ def _settled(system: System, step: float) -> tuple[System, tuple[str, ...]]:
         )
     parts = tuple(replace(part, approach=found.approaches.get(part.name)) for part in system.parts)
     return replace(system, parts=parts).with_values(found.values), tuple(lines)
+
+
+def _stepping(way: Approach) -> str:
+    """How a part is stepped before the run that takes steps of one length only."""
+    if not way.even:
+        return ""
+    return f", in steps of {way.step:g} s, as in the run, on inputs that are held"
 
 
 def _speed(value: float | str) -> float:

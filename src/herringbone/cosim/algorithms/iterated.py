@@ -160,6 +160,13 @@ class PreparedNodes(PreparedRun):
         """At the nodes."""
         return self.nodes.degree > 1
 
+    def held_at(self, part: int) -> float:
+        """The mean; the end of pure elements: see `input_fit`."""
+        signals = self.layout.derivatives
+        if signals is None:
+            return 0.5
+        return float(signals.fit[part, 0] @ np.linspace(0.0, 1.0, signals.samples.size))
+
     def kept_order(self, part: int) -> int:
         """What input derivatives up to an order q, and cubic or quadratic outputs leave.
 

@@ -78,6 +78,10 @@ class PreparedRun(ABC):
         return max(self.degree[part], 0 if signals is None else int(signals.order[part]))
 
     @abstractmethod
+    def held_at(self, part: int) -> float:
+        """Share of a step at which a part without nodes and derivatives is given its inputs."""
+
+    @abstractmethod
     def kept_order(self, part: int) -> int:
         """Convergence order that is left with the derivatives that a part without nodes takes."""
 

@@ -39,6 +39,11 @@ class Prepared(PreparedRun):
     starter: Layout | None = None
     problem: str = ""
 
+    def held_at(self, part: int) -> float:
+        """The end for what has stepped before the part, as `loops.common.set_inputs` has it."""
+        first, end = self.layout.input_first[part : part + 2]
+        return 1.0 if self.layout.at_end[part] or self.layout.input_fresh[first:end].all() else 0.0
+
     def kept_order(self, part: int) -> int:
         """1 if inputs are held; all of it from order 1 on, by the mean and the first moment."""
         signals = self.layout.derivatives

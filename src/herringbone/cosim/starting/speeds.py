@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from herringbone.core.part import Part
 from herringbone.core.wording import setting
 from herringbone.cosim.signature import Kind
-from herringbone.cosim.starting.approached_part import ApproachedPart
+from herringbone.cosim.starting.approached_part import approached_of
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
 
@@ -60,7 +60,7 @@ def unlike_inside(network: Network) -> Iterator[str]:
     for target in network.bodies:
         part = network.parts[target]
         signature = getattr(part, "signature", None)
-        if signature is None or signature.kind is Kind.ELEMENT or _was_stepped(part):
+        if signature is None or signature.kind is Kind.ELEMENT or approached_of(part):
             continue
         fed = {c.input: c for c in network.inputs(target)}
         for number, inside in enumerate(signature.speeds):
@@ -86,14 +86,6 @@ def _to_set(part: Part, speed: str) -> str:
     if named:
         return " or ".join(setting(f"{part.name}.{name}", speed) for name in named[:_SHOWN])
     return f"{speed} {_SPEED}, by a start value of {part.name}: it declares none in {_SPEED}"
-
-
-def _was_stepped(part: Part) -> bool:
-    """True if a part was stepped to the start of the run, and is not as it was tried."""
-    inner: Part | None = part
-    while inner is not None and not isinstance(inner, ApproachedPart):
-        inner = getattr(inner, "part", None)
-    return inner is not None
 
 
 def _round(speed: float) -> str:

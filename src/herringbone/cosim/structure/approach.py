@@ -17,6 +17,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import repeat
 
 import numpy as np
 
@@ -27,6 +28,8 @@ _SOON, _LITTLE = 0.5, 0.05
 is taken for none: what is found is told of one speed then. Else its end would be a jolt."""
 _WHOLE = 1e-9
 _MEAN = 0.5
+_AT_ONCE = 1024
+"""Steps of one length whose inputs are computed together."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +100,8 @@ class Approach:
             its end; see `cosim.signature.rotation`.
         gradual: shafts begin at rest; else at their speed.
         tapered: the last step is made of ever shorter ones.
+        even: all steps have that length, as the part takes no others: it begins up to a step before
+            -T, and its inputs stay until then.
     """
 
     inputs: tuple[SteadyInput, ...]
@@ -105,10 +110,24 @@ class Approach:
     share: float = _MEAN
     gradual: bool = True
     tapered: bool = True
+    even: bool = False
+
+    @property
+    def begin(self) -> float:
+        """Time at which its steps begin [s]."""
+        return -self._count * self.step if self.even else -self.duration
+
+    @property
+    def _count(self) -> int:
+        """How many steps T takes."""
+        return max(1, math.ceil(self.duration / self.step - _WHOLE))
 
     def steps(self) -> Iterator[tuple[float, float]]:
         """Begin and length of each step [s], the last one up to 0."""
-        count = max(1, math.ceil(self.duration / self.step - _WHOLE))
+        count = self._count
+        if self.even:
+            yield from (((n - count) * self.step, self.step) for n in range(count))
+            return
         h = self.duration / count
         last = count - 1 if self.tapered else count
         for n in range(last):
@@ -119,17 +138,30 @@ class Approach:
                 h *= 0.5
             yield -h, h
 
-    def held(self, t: float, h: float) -> np.ndarray:
-        """(n,) inputs that are given for a step from t [s] of length h [s]."""
+    def held(self, t, h: float) -> np.ndarray:  # noqa: ANN001 (a number or an array)
+        """(n,) inputs that are given for a step from t [s] of length h [s]; (k, n) for t (k, 1)."""
         values, rates, accelerations, begins, turning, rising = self._columns
         middle, turned = t + 0.5 * h, t + self.share * h
+        if self.even:
+            middle, turned = (np.maximum(at, -self.duration) for at in (middle, turned))
         x = (middle + self.duration) / (0.5 * self.duration)
-        share = x * x * (3.0 - 2.0 * x) if x < 1.0 else 1.0
+        share = np.where(x < 1.0, x * x * (3.0 - 2.0 * x), 1.0)
         steady = values + rates * middle
         moved = np.where(rising, begins + share * (steady - begins), steady)
         if not turning.any():
             return moved
         return np.where(turning, values + self._remaining(turned, rates, accelerations), moved)
+
+    def given(self) -> Iterator[tuple[float, float, np.ndarray]]:
+        """Begin and length of each step [s], and the (n,) inputs that are held over it."""
+        if not self.even:
+            yield from ((t, h, self.held(t, h)) for t, h in self.steps())
+            return
+        begins = (np.arange(self._count) - self._count) * self.step
+        for first in range(0, begins.size, _AT_ONCE):
+            some = begins[first : first + _AT_ONCE]
+            rows = self.held(some[:, None], self.step)
+            yield from zip(some.tolist(), repeat(self.step), rows, strict=False)
 
     def at_end(self) -> np.ndarray:
         """(n,) inputs at the start of the run."""
@@ -170,11 +202,13 @@ class Approach:
     def _remaining(self, t: float, rate, acceleration):  # noqa: ANN001, ANN202 (numbers or arrays)
         """Minus the integral from t to 0 of the speed."""
         half = -0.5 * self.duration
-        if not self.gradual or t >= half:
-            return rate * t + 0.5 * acceleration * t * t
+        late = rate * t + 0.5 * acceleration * t * t
+        if not self.gradual:
+            return late
         steady = rate * half + 0.5 * acceleration * half * half
         x = (t - 2.0 * half) / -half
         shares = 0.5 - (x**3 - 0.5 * x**4)
         moments = 0.35 - (0.75 * x**4 - 0.4 * x**5)
         begun = rate + 2.0 * acceleration * half
-        return steady + half * (begun * shares - acceleration * half * moments)
+        early = steady + half * (begun * shares - acceleration * half * moments)
+        return np.where(t >= half, late, early)

@@ -100,6 +100,11 @@ def can_be_watched(part: Part, signature: Signature) -> bool:
     )
 
 
+def has_memory(signature: Signature) -> bool:
+    """True if only the feedthrough of a part with states is unknown, and it answers alike."""
+    return signature.kind is Kind.UNKNOWN and signature.memory is Answer.YES and signature.repeats
+
+
 def as_it_moves(signature: Signature) -> Signature:
     """What is known of the signature, for a start."""
     kind = Kind.ELEMENT if signature.memory is Answer.NO else Kind.STATES_AND_FEEDTHROUGH

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -166,12 +167,12 @@ def _surrogate(
     if why:
         return why
     inputs, outputs = ports
-    begin = _beginning(spec, make, inputs)
+    begin = partial(_beginning, spec, make, inputs)
     if part.one_step or signature.tick:
         proposed = [own_step(spec.fmu)] if spec.fmu else []
         steps = list(dict.fromkeys((step, *proposed, *USUAL_STEPS)))
         return _with_clock(begin, part, signature, ports, steps, stack)
-    lab = stack.enter_context(begin.laboratory(inputs, outputs, step))
+    lab = stack.enter_context(begin(step).laboratory(inputs, outputs, step))
     at = part.addresses  # an adapter that holds inputs has none of derivatives
     takes, gives = at.set_derivatives != 0, at.get_derivatives != 0
     tell_cost(lab, part.name)
@@ -202,9 +203,21 @@ class _Beginning(NamedTuple):
             self.make, inputs, outputs, self.start, step, onward=self.onward, content=self.content
         )
 
+    def of_one_length(self) -> "_Beginning":
+        """The same of a part that takes no others: what was restored may have taken such."""
+        make = self.make
+        return self._replace(
+            make=lambda: WithoutStates(make()), content=(*self.content, "one length")
+        )
 
-def _beginning(spec: PartSpec, make: Callable[[], Part], inputs: list[str]) -> _Beginning:
+
+def _beginning(
+    spec: PartSpec, make: Callable[[], Part], inputs: list[str], step: float
+) -> _Beginning:
+    """Where trials with a step [s] begin; a part that takes no others is brought there by it."""
     content = contents_of_trials(spec)
+    if spec.approach and spec.approach.even:
+        spec = replace(spec, approach=replace(spec.approach, step=step))
     if spec.approach is None:
         start = known_start_inputs(make, inputs, content) if inputs else np.empty(0)
         return _Beginning(make, start, None, content)
@@ -217,7 +230,7 @@ def _beginning(spec: PartSpec, make: Callable[[], Part], inputs: list[str]) -> _
 
 
 def _with_clock(
-    begin: _Beginning,
+    begin: Callable[[float], _Beginning],
     part: Part,
     signature: Signature,
     ports: tuple[list[str], list[str]],
@@ -227,20 +240,15 @@ def _with_clock(
     """The map of a part with a clock of its own, or with steps of one length only."""
     inputs, outputs = ports
 
-    def of_one_length() -> Part:  # an instance that was restored may have taken other steps
-        return WithoutStates(begin.make())
-
-    fresh = begin
-    if part.one_step:
-        fresh = begin._replace(make=of_one_length, content=(*begin.content, "one length"))
     wanted = steps if part.one_step else (round_period(signature.tick),)
     for period in wanted:
-        lab = fresh.laboratory(inputs, outputs, period)
+        at = begin(period).of_one_length() if part.one_step else begin(period)
+        lab = at.laboratory(inputs, outputs, period)
         try:
             stack.enter_context(lab)
         except Refused:
             continue
-        pairs = zip(inputs, begin.start, strict=True)
+        pairs = zip(inputs, at.start, strict=True)
         changes = np.array([amplitude(part.variables[name], float(x)) for name, x in pairs])
         divides = signature.kind is Kind.SAMPLED
         return SampledSurrogate(part.name, lab, changes, divides=divides)

@@ -13,6 +13,7 @@ from herringbone.cosim.structure.approach import Approach, SteadyInput
 from herringbone.cosim.structure.system import System
 from herringbone.running.content import contents_of_system
 from herringbone.running.pairs.carrying_flank import COAST, coasts, free_flanks
+from herringbone.running.settling.held import NOT_WANTED, Wanted
 from herringbone.running.settling.search import SettledStart
 from herringbone.running.settling.settled_start import settled_start
 from herringbone.running.settling.stranger import NeverSettlesError, NoSettledStartError
@@ -24,7 +25,7 @@ _NEVER = "never"
 
 
 def loaded_settled_start(
-    system: System, known: System, step: float
+    system: System, known: System, step: float, wanted: Wanted = NOT_WANTED
 ) -> tuple[SettledStart, list[str]]:
     """As `settled_start`, with the flanks that carry among the values, and lines on these.
 
@@ -33,7 +34,7 @@ def loaded_settled_start(
     """
     flanks, wrong = free_flanks(known), None
     try:
-        found = _known_start(system, known, step)
+        found = _known_start(system, known, step, wanted)
         coasting = [gear for gear in flanks if coasts(known.with_values(found.values), gear)]
     except NoSettledStartError as error:
         wrong, coasting = error, list(flanks)
@@ -42,18 +43,22 @@ def loaded_settled_start(
             raise wrong
         return found, []
     try:
-        return _coasting(system, known, step, {gear: flanks[gear] for gear in coasting})
+        return _coasting(system, known, step, wanted, {gear: flanks[gear] for gear in coasting})
     except NoSettledStartError as error:
         raise (wrong or error) from None
 
 
 def _coasting(
-    system: System, known: System, step: float, flanks: Mapping[str, list[str]]
+    system: System,
+    known: System,
+    step: float,
+    wanted: Wanted,
+    flanks: Mapping[str, list[str]],
 ) -> tuple[SettledStart, list[str]]:
     """The start with gear pairs on their coast flanks; raises NoSettledStartError."""
     chosen = {path: COAST for paths in flanks.values() for path in paths}
     turned = known.with_values(chosen)
-    found = _known_start(system.with_values(chosen), turned, step)
+    found = _known_start(system.with_values(chosen), turned, step, wanted)
     for gear in flanks:
         if not coasts(turned.with_values(found.values), gear):
             raise NoSettledStartError(f"no flank of {gear} carries for good")
@@ -61,14 +66,18 @@ def _coasting(
     return found._replace(values={**chosen, **found.values}), lines
 
 
-def _known_start(system: System, known: System, step: float) -> SettledStart:
+def _known_start(system: System, known: System, step: float, wanted: Wanted) -> SettledStart:
     """The start that was found before, or is found now and kept; it may take seconds.
 
     Raises:
         NoSettledStartError: there is none, or none was found.
     """
     key = digest_of(
-        kernels_key(*_SOURCES), *versions_of(*_LIBRARIES), *contents_of_system(system), repr(step)
+        kernels_key(*_SOURCES),
+        *versions_of(*_LIBRARIES),
+        *contents_of_system(system),
+        repr(step),
+        *map(str, wanted),
     )
     file = tried_folder("starts") / f"{key}.json"
     if (plain := kept(file)) is not None:
@@ -77,7 +86,7 @@ def _known_start(system: System, known: System, step: float) -> SettledStart:
         approaches = {name: _approach(way) for name, way in plain["approaches"].items()}
         return SettledStart(**{**plain, "approaches": approaches})
     try:
-        found = settled_start(system, known, step)
+        found = settled_start(system, known, step, wanted)
     except NeverSettlesError as error:
         keep(file, {_NEVER: str(error)})
         raise

@@ -14,11 +14,11 @@ from herringbone.cosim.signature import Kind
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.running.foreign.foreign_parts import as_it_moves, can_be_watched
+from herringbone.running.foreign.foreign_parts import as_it_moves, can_be_watched, has_memory
 from herringbone.running.foreign.start_inputs import start_inputs
-from herringbone.running.foreign.started import takes_one_step
 from herringbone.running.foreign.trials import found_signature
 from herringbone.running.loading import instances
+from herringbone.running.settling.held import Held, Wanted, held_in_run
 from herringbone.running.settling.stranger import NoSettledStartError, Stranger
 
 _KINDS = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH, Kind.SOURCE, Kind.SAMPLED}
@@ -26,7 +26,7 @@ _KINDS = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH, Kind.SOURCE, Kin
 
 @contextmanager
 def laid_out(
-    system: System, known: System, step: float
+    system: System, known: System, step: float, wanted: Wanted
 ) -> Iterator[tuple[Network, list[Stranger]]]:
     """The network of all parts, and the foreign ones as they can be tried."""
     own = {i.name: InProcessPart(i) for i in make_instances(known)}
@@ -37,24 +37,31 @@ def laid_out(
         makes = {spec.name: stack.enter_context(instances(spec)) for spec in foreign}
         opened = {name: make() for name, make in makes.items()}
         try:
-            network = build_network(
-                system, [own.get(spec.name) or opened[spec.name] for spec in system.parts]
-            )
+            parts = [own.get(spec.name) or opened[spec.name] for spec in system.parts]
+            network = build_network(system, parts)
+            held = held_in_run(system, parts, wanted, step)
         finally:
             for part in opened.values():
                 start_inputs(part, [])  # which closes it; some must be initialised for that
         strangers = [
-            _stranger(spec, network, opened[spec.name], makes[spec.name], step) for spec in foreign
+            _stranger(spec, network, opened[spec.name], makes[spec.name], step, held.get(spec.name))
+            for spec in foreign
         ]
         yield network, strangers
 
 
 def _stranger(
-    spec: PartSpec, network: Network, part: Part, make: Callable[[], Part], step: float
+    spec: PartSpec,
+    network: Network,
+    part: Part,
+    make: Callable[[], Part],
+    step: float,
+    held: Held | None,
 ) -> Stranger:
     """A foreign part of the network; raises NoSettledStartError if it cannot settle in trials."""
     signature = found_signature(spec, part, instances, step)
-    if can_be_watched(part, signature):  # a fan at rest: its law is linear where it turns
+    if can_be_watched(part, signature) or (held and has_memory(signature)):
+        # a fan at rest: its law is linear where it turns; motion that even steps do not resolve
         signature = as_it_moves(signature)
     if signature.kind not in _KINDS:
         why = f": {signature.notes[0]}" if signature.notes else ""
@@ -64,7 +71,7 @@ def _stranger(
     taken = network.outputs(number)
     outputs = list(dict.fromkeys([*taken, *rates(part, taken)]))
     begin = start_inputs(make(), inputs) if inputs else np.empty(0)
-    found = Stranger(part, make, signature, inputs, outputs, begin, _units(network, part))
+    found = Stranger(part, make, signature, inputs, outputs, begin, _units(network, part), held)
     if found.turning:
         angle = next(iter(found.turning))
         raise NoSettledStartError(f"{part.name}.{angle} is the angle of a shaft of its own")
@@ -84,11 +91,8 @@ def _units(network: Network, part: Part) -> dict[str, str]:
 
 
 def _refuse_untriable(spec: PartSpec) -> None:
-    """Raise NoSettledStartError of an FMU that allows no further instance, or no other steps."""
-    file = Path(str(spec.fmu))
-    if not runs_again(spec.name, file):
+    """Raise NoSettledStartError of an FMU that allows no further instance."""
+    if not runs_again(spec.name, Path(str(spec.fmu))):
         raise NoSettledStartError(
             f"{spec.name} can be instantiated once only, and runs in this process"
         )
-    if takes_one_step(file):
-        raise NoSettledStartError(f"{spec.name} takes steps of one length only")

@@ -15,6 +15,7 @@ from contextlib import suppress
 from herringbone.core import HerringboneError
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System
+from herringbone.running.settling.held import Wanted
 from herringbone.running.settling.laid_out import laid_out
 from herringbone.running.settling.search import PROBE, Search, SettledStart
 from herringbone.running.settling.stranger import (
@@ -28,20 +29,21 @@ _NEAR, _FARTHEST = 0.05, 0.5
 start."""
 
 
-def settled_start(system: System, known: System, step: float) -> SettledStart:
+def settled_start(system: System, known: System, step: float, wanted: Wanted) -> SettledStart:
     """A start in equilibrium with all parts.
 
     Args:
         system: with all values.
         known: the same without foreign parts.
         step: of the trials that tell what foreign parts are [s].
+        wanted: of the coupling.
 
     Raises:
         NeverSettlesError: there is none.
         NoSettledStartError: none was found, as a part failed, or cannot be tried.
     """
     try:
-        with laid_out(system, known, step) as (network, strangers):
+        with laid_out(system, known, step, wanted) as (network, strangers):
             return _found(known, network, strangers)
     except NeverSettlesError:
         raise

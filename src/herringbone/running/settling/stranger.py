@@ -12,6 +12,7 @@ from herringbone.cosim.signature.trial import Trial
 from herringbone.cosim.starting.approached_part import begin_at
 from herringbone.cosim.structure.approach import Approach, SteadyInput
 from herringbone.cosim.structure.rates import rate_of
+from herringbone.running.settling.held import Held
 from herringbone.running.settling.judged import Path, come_to
 from herringbone.running.settling.settled import CHANGES, LONGEST, Settled, dies_out, why_not
 from herringbone.running.settling.turn_means import POINT, shafts_of
@@ -48,6 +49,7 @@ class Stranger:
         outputs: names of outputs that others take, (m,).
         begin: start values of the inputs (n,).
         units: of inputs and outputs, by name, as far as they are known.
+        held: how a run steps it, if it takes steps of one length only.
 
     Attributes:
         name, inputs, outputs, begin, units: see above.
@@ -65,10 +67,11 @@ class Stranger:
         outputs: Sequence[str],
         begin: np.ndarray,
         units: Mapping[str, str],
+        held: Held | None = None,
     ) -> None:
         self.name, self.inputs, self.outputs, self.begin = part.name, inputs, outputs, begin
         self.units, self.least = units, dict(_NOTHING)
-        self._make, self._signature = make, signature
+        self._make, self._signature, self._held = make, signature, held
         self.at_once = signature.kind in {Kind.ELEMENT, Kind.SOURCE}
         self.turning = frozenset(
             name for name in outputs if units.get(name) == "rad" and rate_of(part, name) in outputs
@@ -97,6 +100,10 @@ class Stranger:
         self, steady: Sequence[SteadyInput], duration: float, step: float, *, gradual: bool
     ) -> Approach:
         """How it is brought to inputs in steady motion."""
+        if self._held:
+            return Approach(
+                tuple(steady), duration, *self._held, gradual=gradual, tapered=False, even=True
+            )
         step = max(step, duration / _MOST_STEPS)
         return Approach(
             tuple(steady), duration, step, self._share, gradual=gradual, tapered=self._tapered
@@ -106,17 +113,16 @@ class Stranger:
         """What it comes to; raises FmuError, NoSettledStartError."""
         part = self._make()
         begin_at(part, given)
-        trial = Trial(part, self.inputs, self.outputs, -given.duration, LONGEST)
+        trial = Trial(part, self.inputs, self.outputs, given.begin, LONGEST)
         try:
-            direct = self.feedthrough()
+            direct = 0.0 * self.feedthrough() if given.even else self.feedthrough()
             first, shafts = -0.5 * given.duration, shafts_of(given)
             angle = given.step * max((abs(shaft.speed) for shaft in shafts), default=0.0)
             every = int(-0.5 * first / given.step / _WATCHED)
             every = max(1, min(every, int(POINT / angle)) if angle else every)
             times, seen = list[float](), list[np.ndarray]()
             peak = np.zeros(len(self.outputs))
-            for number, (t, h) in enumerate(given.steps()):
-                held = given.held(t, h)
+            for number, (t, h, held) in enumerate(given.given()):
                 trial.set(held)
                 trial.step(h)
                 peak = np.maximum(peak, np.abs(trial.values()))
@@ -124,7 +130,8 @@ class Stranger:
                     end = given.held(t + h, 0.0)
                     times.append(t + h)
                     seen.append(trial.values() + direct @ (end - held))
-            trial.set(given.at_end())
+            if not given.even:  # a run takes what its steps give
+                trial.set(given.at_end())
             last = trial.values()
         finally:
             trial.close()

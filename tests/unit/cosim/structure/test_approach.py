@@ -49,6 +49,25 @@ def test_steps_end_at_the_start_of_the_run(tapered):
     assert (steps[-1][1] < 1e-3 * steps[0][1]) == tapered
 
 
+@pytest.mark.parametrize("gradual", [True, False])
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_steps_of_one_length(share, gradual):
+    """All of that length, to the bit; what they begin earlier by, inputs stay as they begin."""
+    step = 0.3e-3
+    given = Approach(INPUTS, DURATION, step, share, gradual, tapered=False, even=True)
+    rows = list(given.given())
+    assert {h for _, h, _ in rows} == {step} and len(rows) == 1334
+    assert [(t, h) for t, h, _ in rows] == list(given.steps())
+    assert rows[0][0] == given.begin == pytest.approx(-1334 * step, rel=1e-12)
+    assert rows[-1][0] == pytest.approx(-step, abs=1e-15)
+    assert np.array([held for *_, held in rows]) == pytest.approx(
+        np.array([given.held(t, h) for t, h, _ in rows]), rel=1e-12, abs=1e-12
+    )
+    free = Approach(INPUTS, DURATION, step, share, gradual, tapered=False)
+    assert given.held(given.begin, 0.0) == pytest.approx(free.held(-DURATION, 0.0), abs=1e-12)
+    assert given.held(-0.1, step) == pytest.approx(free.held(-0.1, step), abs=1e-12)
+
+
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_how_inputs_move_on_where_shafts_speed_up(share):
     """As in the motion before: an angle at its own place in the step, its derivatives at once."""
