@@ -12,6 +12,7 @@ from herringbone.components.registry import COMPONENTS
 from herringbone.core.anatomy import Anatomy, Joint, PartInfo, part_info
 from herringbone.core.caching.remembered import Remembered
 from herringbone.core.declaring.roles import Port, PortKind, Quantity, Role
+from herringbone.core.instance import is_number, no_number
 from herringbone.cosim.structure.system import PartSpec, System
 
 _known: Remembered[Anatomy] = Remembered(64)
@@ -51,6 +52,23 @@ def value_at(system: System, path: str) -> float:
     part = system.part(name)
     declared = COMPONENTS[str(part.component)].declaration.variable(variable)
     return float(part.values.get(variable, declared.start))
+
+
+def check_numbers(system: System) -> None:
+    """Refuse values of components' real variables that are no numbers.
+
+    What a component does not have, and values out of range, its instance refuses.
+
+    Raises:
+        ParameterError: a value is a text, or something else that is no number.
+    """
+    for part in system.parts:
+        if part.component not in COMPONENTS or all(map(is_number, part.values.values())):
+            continue
+        for variable in COMPONENTS[part.component].declaration.variables:
+            value = part.values.get(variable.name, variable.start)
+            if not is_number(value):
+                raise no_number(f"{part.name}.{variable.name}", value, variable.unit)
 
 
 def carrying_flank(system: System, pair: str) -> float:

@@ -54,10 +54,9 @@ class Instance:
             ) from None
 
     def _unit(self, name: str) -> str:
-        """What a message says of the unit of a variable."""
+        """Unit of a variable; "" of a value at a node."""
         units = {v.name: v.unit for v in self.component.declaration.variables}
-        unit = units.get(name, "")
-        return f" alone, in {unit}" if unit not in {"", "1"} else ""
+        return units.get(name, "")
 
     def __getitem__(self, name: str) -> float:
         return float(self.block[self._known(name)])
@@ -78,10 +77,8 @@ class Instance:
         index, d = self._known(name), self.component.declaration
         if d.first_output <= index < d.mutable_size:
             raise ParameterError(f"{self.name}.{name} = {value}: it is computed there, not set")
-        if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.number):
-            raise ParameterError(
-                f"{self.name}.{name} = {value!r}: it takes a number{self._unit(name)}"
-            )
+        if not is_number(value):
+            raise no_number(f"{self.name}.{name}", value, self._unit(name))
         if index >= d.mutable_size:
             check_value(self.name, d.variable(name), float(value))
             self.work[:] = 0.0  # what kernels keep there follows from parameters
@@ -172,6 +169,23 @@ class Instance:
         hidden = self.block[len(declaration.states) : declaration.state_count]
         bad = np.flatnonzero(~np.isfinite(hidden))
         return (f"hidden state {bad[0] + 1}", float(hidden[bad[0]])) if bad.size else None
+
+
+def is_number(value: object) -> bool:
+    """True for what a real variable takes: no truth value, no complex number, no text."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
+def no_number(where: str, value: object, unit: str) -> ParameterError:
+    """What is said of a value that is no number.
+
+    Args:
+        where: path of the variable.
+        value: it.
+        unit: of the variable.
+    """
+    alone = f" alone, in {unit}" if unit not in {"", "1"} else ""
+    return ParameterError(f"{where} = {value!r}: it takes a number{alone}")
 
 
 def check_value(instance: str, variable: Variable, value: float) -> None:

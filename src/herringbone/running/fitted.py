@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from herringbone.analysis.anatomy import check_numbers
 from herringbone.analysis.figures.sensing.sensors import check_sensors
 from herringbone.analysis.figures.system_housings import misplaced_seats
 from herringbone.core import ParameterError
@@ -69,6 +70,7 @@ def with_files(system: System, scene: Scene, wishes: "Wishes", folder: Path) -> 
     system, remarks = with_replacements(system, replaced, probe=wishes.probe)
     system = with_housing_data(system, data).with_values(scene.values)
     check_sensors(system)
+    check_numbers(system)
     system, jobs, notes = with_gears(system, gears)
     return WithFiles(system, jobs, (*notes, *misplaced_seats(system)), remarks)
 

@@ -4,12 +4,13 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
-from herringbone.analysis.anatomy import anatomy, orders_told
+from herringbone.analysis.anatomy import anatomy, check_numbers, orders_told
 from herringbone.analysis.set_points import SPEED, TORQUE, addressed
 from herringbone.components.registry import component
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Role
 from herringbone.core.given import check_called, check_mapping, check_reference, check_several
+from herringbone.core.instance import is_number
 from herringbone.core.places.files import as_texts, is_file
 from herringbone.core.process.telling import Tell, untold
 from herringbone.core.wording import speaks_commands
@@ -121,6 +122,7 @@ def sweep(
     _check_wishes(wishes, chosen, series=series)
     _check_once(known, study.names, wishes.values)
     units = {name: _unit(known, name) for name in study.names}
+    _check_texts(known, study)
     units |= {SPEED: study.speed_unit} if SPEED in units else {}
     first = study.point(0)
     commanded(known.with_values({n: v for n, v in first.items() if n not in SET_POINTS}), first)
@@ -199,6 +201,13 @@ def _check_once(known: System, names: Sequence[str], fixed: Mapping[str, object]
             raise ParameterError(f"{first} and {name} are the same variable; give one of them")
     if twice := sorted(set(names) & set(fixed)):
         raise ParameterError(f"{twice[0]} is varied, and set besides; give one of them")
+
+
+def _check_texts(known: System, study: Study) -> None:
+    """Raise ParameterError if a text is given where a number is due; the rest points tell."""
+    for name, values in zip(study.names, zip(*study.points, strict=True), strict=True):
+        for text in dict.fromkeys(value for value in values if not is_number(value)):
+            check_numbers(known.with_values({name: text}))
 
 
 def _unit(system: System, name: str) -> str:

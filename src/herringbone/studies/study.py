@@ -4,15 +4,19 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from random import Random
 
 from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.core import ParameterError
+from herringbone.core.instance import is_number, no_number
 from herringbone.core.wording import several_values
 
 SET_POINTS = {SPEED: "rad/s", TORQUE: "N.m"}
 """Parameters that address what a system declares as its set points, and their SI units."""
 PER_MINUTE = "r/min"
+_OTHERS = str | Path | bool
+"""What foreign FMUs take besides numbers."""
 
 Value = float | str
 Point = dict[str, Value]
@@ -39,10 +43,15 @@ class Study:
         """Check it.
 
         Raises:
-            ParameterError: it has no points, or one twice.
+            ParameterError: it has no points, or one twice, or a value is no number or text.
         """
         if not self.points:
             raise ParameterError("a study takes at least one point")
+        units = {**SET_POINTS, SPEED: self.speed_unit}
+        for name, values in zip(self.names, zip(*self.points, strict=True), strict=True):
+            for value in values:
+                if not is_number(value) and (name in units or not isinstance(value, _OTHERS)):
+                    raise no_number(name, value, units.get(name, ""))
         if len(set(self.points)) < len(self.points):
             twice = next(p for p in self.points if self.points.count(p) > 1)
             told = ", ".join(f"{n} = {v}" for n, v in zip(self.names, twice, strict=True))

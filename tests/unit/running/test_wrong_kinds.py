@@ -6,6 +6,8 @@ import herringbone as hb
 from herringbone.core import ParameterError
 from herringbone.core.given import check_called
 
+MOTION, TEETH = "bearing_supports.seat_motion", "gear_mesh.pinion.number_of_teeth"
+STEP = "gear_mesh.micro_step"
 WRONG = [
     (lambda: hb.run(None), "system = None: it takes a name, a folder"),
     (lambda: hb.run("test_rig", values=[("a.b", 1.0)]), r"values = \[\('a.b', 1.0\)\]: .* by name"),
@@ -18,6 +20,15 @@ WRONG = [
     (lambda: hb.sweep("test_rig", vary=[1.0]), r"vary = \[1.0\]: it takes values by name"),
     (lambda: hb.sweep("test_rig", speed=[1.0], values=[2]), r"values = \[2\]: it takes values by"),
     (lambda: hb.sweep(hb.System, speed=[1.0]), "system = <class .*: it takes a name, a folder"),
+    (lambda: hb.run("test_rig", values={MOTION: "a"}), f"gearbox.{MOTION} = 'a': it takes a num"),
+    (lambda: hb.run("test_rig", values={MOTION: None}), f"{MOTION} = None: it takes a number"),
+    (lambda: hb.run("test_rig", speed=1.0, values={TEETH: "x"}), f"{TEETH} = 'x': it takes a num"),
+    (lambda: hb.steady("test_rig", values={MOTION: "a"}), f"{MOTION} = 'a': it takes a number"),
+    (lambda: hb.modes("test_rig", values={MOTION: 1j}), f"{MOTION} = 1j: it takes a number"),
+    (lambda: hb.modes("test_rig", values={STEP: "a"}), f"{STEP} = 'a': .* number alone, in s"),
+    (lambda: hb.sweep("test_rig", vary={MOTION: [1.0, "a"]}), f"{MOTION} = 'a': it takes a number"),
+    (lambda: hb.sweep("test_rig", vary={MOTION: [[1.0]]}), rf"{MOTION} = \[1.0\]: it takes a num"),
+    (lambda: hb.sweep("test_rig", vary={"speed": ["a"]}), "speed = 'a': .* alone, in rad/s"),
     (lambda: hb.SteadySolver("test_rig"), "system = 'test_rig': it takes a System"),
     (lambda: hb.Ask("seat velocity", tolerance=2.0), "tolerance = 2: it must lie between 0 and 1"),
     (lambda: hb.Ask(()), "ask: what: it takes the names"),

@@ -7,7 +7,7 @@ from dataclasses import replace
 from numbers import Real
 from pathlib import Path
 
-from herringbone.analysis.anatomy import anatomy, value_at
+from herringbone.analysis.anatomy import anatomy, check_numbers, value_at
 from herringbone.analysis.set_points import (
     QUANTITIES,
     SPEED,
@@ -50,10 +50,16 @@ def commanded(system: System, point: Point) -> dict[str, float | str]:
 
 
 def with_known_values(system: System, scene: Scene, wishes: Wishes) -> System:
-    """A system with what decides on its set points: values and replaced parts."""
+    """A system with what decides on its set points: values and replaced parts.
+
+    Raises:
+        HerringboneError: a value is no number, or an FMU cannot be used.
+    """
     fmus = split_housings(housings_of(system, scene, wishes))[1]
     system, _ = with_replacements(system, {**wishes.replace_parts, **fmus}, probe=wishes.probe)
-    return system.with_values({**scene.values, **as_texts(wishes.values)})
+    system = system.with_values({**scene.values, **as_texts(wishes.values)})
+    check_numbers(system)
+    return system
 
 
 def own_point(system: System) -> tuple[float | None, float | None]:
