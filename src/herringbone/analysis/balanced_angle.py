@@ -10,7 +10,9 @@ the acceleration of the speed over the angle. Where it changes its sign, the sea
 Where it is larger at all angles than the angle changes it, no angle balances these torques.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache
 
 import numpy as np
 
@@ -43,8 +45,6 @@ def balanced_angles(twin: Twin, x: np.ndarray, scale: np.ndarray) -> Iterator[np
     Raises:
         NoBalanceError: after the last one, if angles change less than what the torques leave.
     """
-    from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
-
     turning = np.flatnonzero(rigid_rotation(twin, x))
     rotating, _ = steady_rows(twin)
     if len(turning) != 1 or len(rotating) != 1:
@@ -66,14 +66,34 @@ def balanced_angles(twin: Twin, x: np.ndarray, scale: np.ndarray) -> Iterator[np
         if left[-2] * left[-1] > 0.0:
             continue
 
+        @cache
         def acceleration(at: float, near: np.ndarray = before) -> float:
             there = rest.reached(_turned(near, angle, at))
             return np.nan if there is None else float(rest.rate(there)[speed])
 
-        balance = rest.reached(_turned(before, angle, brentq(acceleration, *ends, xtol=_NEAR)))
+        balanced = _crossing(acceleration, ends)
+        if balanced is None:
+            continue
+        balance = rest.reached(_turned(before, angle, balanced))
         if balance is not None:
             yield balance
     _refuse_unbalanced(twin, names_of_states(twin)[speed], np.array(left))
+
+
+def _crossing(acceleration: Callable[[float], float], ends: tuple[float, float]) -> float | None:
+    """Angle [rad] at which an acceleration vanishes between two ends.
+
+    None if it does not: in a clearance it may jump, as the states come to rest on another flank if
+    they come from the other end. None, too, where they come to no rest, of which it is nan.
+    """
+    from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
+
+    first, last = map(acceleration, ends)
+    if not first * last <= 0.0:
+        return None
+    with suppress(ValueError):  # of nan between the ends
+        return float(brentq(acceleration, *ends, xtol=_NEAR))
+    return None
 
 
 def _refuse_unbalanced(twin: Twin, speed: str, accelerations: np.ndarray) -> None:

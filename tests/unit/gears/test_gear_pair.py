@@ -120,6 +120,11 @@ BAD = {
         "pinion: teeth are undercut",
     ),
     "pointed": (SPUR, {"center_distance": None, "profile_shift_coefficient": (1.3, 0)}, "pointed"),
+    "huge profile shift": (
+        SPUR,
+        {"center_distance": None, "profile_shift_coefficient": (1e9, 0)},
+        "x1 \\+ x2 = 1e\\+09 leave no working pressure angle; use a smaller sum",
+    ),
     "contact ratio": (SPUR, {"addendum_coefficient": 0.6}, "contact ratio 0.9"),
     "impossible center distance": (THESIS, {"center_distance": 0.19}, "19.*impossible"),
     "far center distance": (SPUR, {"center_distance": 0.0960}, "contact ratio"),

@@ -25,6 +25,7 @@ VALUES = {
     "bearing_supports.wheel.radial_clearance": 60e-6,
 }
 MESH = 2.0 * np.pi / 27.0
+SMALL = {"pinion": 1e-5, "wheel": -1e-5}
 NEAR = 1e-6
 """Of the angle [rad], as balances are found."""
 
@@ -93,3 +94,14 @@ def test_one_free_shaft_between_torques_has_no_state_that_comes_to_rest():
     twin = Twin(System("free", "", parts, (("disk.flange_a", "motor.flange"),)))
     with pytest.raises(EquilibriumError, match=r"disk.* changes by 270 rad/s\^2 at any angle"):
         list(balanced_angles(twin, twin.state, np.ones(twin.state.size)))
+
+
+def test_torques_near_zero_that_jump_over_their_balance():
+    """2 N mm between flanks of which one half is 10 um off: it comes to rest on either of them.
+
+    So the acceleration changes its sign from one angle to the next, and has the same at both if
+    the states come from one of them.
+    """
+    torques = {f"{part}_torque.torque_factor": share for part, share in SMALL.items()}
+    with pytest.raises(EquilibriumError, match=r"^no steady rotation of 'on_ground' was found"):
+        prepared("on_ground", None, Wishes(values=torques))

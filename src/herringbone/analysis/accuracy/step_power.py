@@ -9,6 +9,7 @@ what the longer steps err, and p is the power between these: at the last step mo
 what falls with a lower one. So powers of long steps, high by chance, do not count as they are.
 """
 
+import math
 from typing import NamedTuple
 
 LOWEST, HIGHEST = 0.01, 8.0
@@ -35,7 +36,7 @@ class Left(NamedTuple):
 
 
 def step_power(first: float, second: float, steps: tuple[float, ...]) -> float:
-    """Power p, between 0 and 8.
+    """Power p, between 0 and 8; 0 where differences do not fall, as without bound.
 
     Args:
         first: difference d12.
@@ -44,8 +45,8 @@ def step_power(first: float, second: float, steps: tuple[float, ...]) -> float:
     """
     from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
 
-    if not first > 0.0 or not second > 0.0:
-        return HIGHEST if first > 0.0 else 0.0
+    if not first > 0.0 or not 0.0 < second < math.inf:
+        return HIGHEST if first > 0.0 and second == 0.0 else 0.0
 
     def excess(p: float) -> float:
         two, three = ((h / steps[0]) ** p for h in steps[1:])

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from herringbone.core import ParameterError
-from herringbone.gears.geometry.involute import involute, involute_angle
+from herringbone.gears.geometry.involute import STEEPEST, involute, involute_angle
 
 if TYPE_CHECKING:
     from herringbone.gears.geometry.gear_pair import GearPair
@@ -39,9 +39,10 @@ def center_distance(pair: "GearPair") -> float:
         involute(pair.transverse_pressure_angle)
         + 2.0 * tan_n * total / sum(pair.number_of_teeth)
     )  # fmt: skip
-    if value <= 0.0:
+    if not 0.0 < value < involute(STEEPEST):
         raise ParameterError(
-            f"profile shifts x1 + x2 = {total:g} leave no working pressure angle; use a larger sum"
+            f"profile shifts x1 + x2 = {total:g} leave no working pressure angle; use a "
+            f"{'smaller' if total > 0.0 else 'larger'} sum"
         )
     cosines = math.cos(pair.transverse_pressure_angle) / math.cos(involute_angle(value))
     return pair.reference_center_distance * cosines

@@ -1,5 +1,7 @@
 """Powers and errors of results that are C h^p apart from the truth, by arithmetic."""
 
+import math
+
 import pytest
 
 from herringbone.analysis.accuracy.step_power import HIGHEST, left, left_of, step_power
@@ -17,6 +19,13 @@ def test_power_and_error(power):
 
 def test_differences_that_do_not_fall():
     assert step_power(1e-3, 1.1e-3, STEPS) == 0.0
+
+
+def test_differences_without_bound_have_no_power():
+    """As of a channel that does not change in one of both runs."""
+    assert step_power(math.inf, math.inf, STEPS) == 0.0
+    assert step_power(1e-3, math.inf, STEPS) == 0.0
+    assert left(math.inf, math.inf, STEPS).error == math.inf
 
 
 def test_runs_that_are_equal():
