@@ -82,7 +82,7 @@ class Instance:
         if index >= d.mutable_size:
             check_value(self.name, d.variable(name), float(value))
             self.work[:] = 0.0  # what kernels keep there follows from parameters
-        elif not math.isfinite(value):
+        elif not math.isfinite(float(value)):
             raise ParameterError(f"{self.name}.{name} = {value}: it must be finite")
         self.block[index] = value
 
