@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from herringbone.core import FmuError
-from herringbone.core.part import Part
+from herringbone.core.part import Part, reals
 from herringbone.cosim.adapter import PartAdapter
 from herringbone.cosim.signature.trial import Trial
 from herringbone.cosim.structure.approach import Approach
@@ -45,7 +45,7 @@ class ApproachedPart(PartAdapter):
         names = [u.name for u in self._approach.inputs]
         begin_at(self.part, self._approach)
         early = start_time + self._approach.begin
-        shown = self._outputs() if self._approach.even else []
+        shown = reals(self, "output") if self._approach.even else []
         try:
             trial = Trial(
                 self.part, names, shown, early, stop_time, tolerance, counted=self._in_trial
@@ -58,11 +58,6 @@ class ApproachedPart(PartAdapter):
             trial.step(h)
         self.first = dict(zip(shown, trial.values().tolist(), strict=True))
         trial.set(self._approach.at_end())
-
-    def _outputs(self) -> list[str]:
-        """Names of its real outputs."""
-        known = self.variables.values()
-        return [v.name for v in known if v.causality == "output" and v.is_real]
 
     def exit_initialization(self) -> None:
         """It has left initialisation already."""
