@@ -30,7 +30,9 @@ _SYSTEM = {
 }
 _WINDOWS = ("convert", "heap", "locale", "private", "runtime", "stdio", "string")
 _LINK = {
-    "so": ("-Wl,--gc-sections", "-Wl,--build-id=none", "-Wl,-z,defs"),
+    "so": (
+        "-Wl,--gc-sections", "-Wl,--build-id=none", "-Wl,-z,defs", "-Wl,--hash-style=gnu",
+    ),
     "dll": (
         "-nostdlib", "-rtlib=none", "-Wl,--gc-sections",
         *(f"-lapi-ms-win-crt-{part}-l1-1-0" for part in _WINDOWS), "-lkernel32",

@@ -8,7 +8,7 @@
 
 /* A jump is blamed that is so many times larger than those before. */
 static const double LARGER = 2.0;
-/* Of the largest one; smaller jumps, as of a noisy signal, tell nothing of it. */
+/* Of another jump; smaller ones beside it are noise, and tell nothing of a loop. */
 static const double COUNTS = 1e-3;
 static const char ADVICE[] = "communication_steps.txt";
 
@@ -52,7 +52,7 @@ static void note_ahead(Instance *instance) {
 }
 
 /* What is known of an input's jumps: the largest of the newer half and of the older half, and how
-   often the newer ones change their sign, of those that count beside the largest. */
+   often the newer ones change their sign, noise left out. */
 typedef struct {
     double newer, older;
     uint32_t turns;
@@ -62,16 +62,16 @@ static Jumps jumps_of(const Instance *instance, uint32_t input) {
     const double *all = instance->jumps + input * JUMPS;
     uint32_t known = instance->steps < JUMPS ? instance->steps : JUMPS, half = (known + 1) / 2;
     Jumps found = {0.0, 0.0, 0};
-    for (uint32_t k = known; k > 0; k--) { /* the last one has k = 1 */
-        double *largest = k <= half ? &found.newer : &found.older;
-        *largest = larger(*largest, fabs(all[(instance->steps - k) % JUMPS]));
-    }
     double before = 0.0;
-    for (uint32_t k = known; k > 0; k--) {
-        double jump = all[(instance->steps - k) % JUMPS];
-        if (!(fabs(jump) > COUNTS * found.newer))
+    for (uint32_t k = known; k > 0; k--) { /* the last one has k = 1 */
+        double jump = all[(instance->steps - k) % JUMPS], size = fabs(jump);
+        double *largest = k <= half ? &found.newer : &found.older;
+        *largest = larger(*largest, size);
+        if (COUNTS * size > fabs(before))
+            found.turns = 0;
+        else if (COUNTS * fabs(before) >= size)
             continue;
-        if (k <= half && jump * before < 0.0)
+        else if (k <= half && jump * before < 0.0)
             found.turns++;
         before = jump;
     }

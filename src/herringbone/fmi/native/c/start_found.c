@@ -7,9 +7,7 @@ void hb_start_found(Instance *instance) {
         return;
     Message message;
     message_write(&message,
-                  "%s: %s = %g is dropped: the start is searched, at %g; "
-                  "start_mode = as_set keeps it",
-                  instance->name, real_name(state), message_number(instance->set_to),
-                  message_number(instance->block[state]));
+                  "%s: %s = %g is dropped, as start_mode is not as_set",
+                  instance->name, real_name(state), message_number(instance->set_to));
     log_write(&instance->log, STATUS_WARNING, &message);
 }
