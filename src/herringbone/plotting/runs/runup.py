@@ -11,6 +11,7 @@ from herringbone.analysis.asked import group
 from herringbone.analysis.figures.order_tracking import OrderMap
 from herringbone.analysis.figures.runup import (
     BLOCK,
+    HIGHEST,
     rotation,
     speed_changes,
     tracked,
@@ -18,7 +19,6 @@ from herringbone.analysis.figures.runup import (
 )
 from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
-from herringbone.core.frequencies import HIGHEST
 from herringbone.plotting.maps import decibels_map, order_rays
 from herringbone.plotting.panels import headline
 from herringbone.plotting.style import legend, new_figure, scaled_unit, styled
