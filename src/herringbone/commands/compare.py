@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from herringbone.commands import record
-from herringbone.commands.options import check_highest, refuse_given
+from herringbone.commands.options import refuse_given
 from herringbone.commands.output import check_writable, show
 from herringbone.core import ParameterError
-from herringbone.core.frequencies import HIGHEST
+from herringbone.core.frequencies import HIGHEST, check_end
 from herringbone.core.places.files import write_whole
 
 if TYPE_CHECKING:
@@ -58,7 +58,8 @@ def run(options: argparse.Namespace) -> int:
     from herringbone.analysis.accuracy.comparison import compare  # noqa: PLC0415 (numpy: lazy)
     from herringbone.result.folder.typed import as_json  # noqa: PLC0415
 
-    check_highest(options.highest)
+    if options.highest is not None:
+        check_end("highest", options.highest, finite=False)
     if not options.second.exists():
         raise ParameterError(f"{options.second} does not exist; B is a results folder or a record")
     if options.output:

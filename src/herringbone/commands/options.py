@@ -301,9 +301,3 @@ def refuse_given(options: argparse.Namespace, names: Sequence[str], why: str) ->
     for name in names:
         if getattr(options, name) not in (None, []):
             raise ParameterError(f"--{name.replace('_', '-')}: {why}")
-
-
-def check_highest(highest: float | None) -> None:
-    """Raise ParameterError for an end of spectra [Hz] that is none."""
-    if highest is not None and not highest > 0.0:
-        raise ParameterError(f"--highest {highest:g}: it must be positive, in Hz")

@@ -3,10 +3,9 @@
 import argparse
 from pathlib import Path
 
-from herringbone.commands.options import check_highest
 from herringbone.commands.output import check_writable, say, show, written_into
 from herringbone.core import ParameterError
-from herringbone.core.frequencies import HIGHEST
+from herringbone.core.frequencies import HIGHEST, check_end
 from herringbone.core.places.files import is_file
 from herringbone.result.folder.names import STUDY, STUDY_TABLE
 
@@ -33,7 +32,8 @@ def run(options: argparse.Namespace) -> int:
         HerringboneError: the folder holds no results, or files cannot be written.
     """
     output = options.output or options.folder
-    check_highest(options.highest)
+    if options.highest is not None:
+        check_end("highest", options.highest, finite=False)
     if not options.folder.exists():
         raise ParameterError(f"there is no folder {options.folder}")
     if is_file(options.folder):

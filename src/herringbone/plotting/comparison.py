@@ -8,7 +8,7 @@ from herringbone.analysis.accuracy.common_ground import Sides
 from herringbone.analysis.accuracy.comparison import Comparison
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, PADDING, amplitude_spectrum
-from herringbone.core.frequencies import HIGHEST
+from herringbone.core.frequencies import HIGHEST, check_end
 from herringbone.core.wording import percent
 from herringbone.plotting.panels import DECADES, close_up, mark_orders
 from herringbone.plotting.style import (
@@ -32,7 +32,11 @@ def comparison(found: Comparison, highest: float = HIGHEST) -> Figure:
     Args:
         found: two runs.
         highest: end of the spectra [Hz].
+
+    Raises:
+        ParameterError: the end is not positive.
     """
+    check_end("highest", highest, finite=False)
     rows = list(found.groups.itertuples())
     title = f"{found.first.name} and {found.second.name}, worst channels"
     figure = new_figure(title, max(len(rows), 1), 2, width=14.5)

@@ -111,6 +111,21 @@ def test_campbell_says_what_it_leaves_out(rig):
     assert f"{above} modes above 2000 Hz not shown" in figure.get_suptitle()
 
 
+@pytest.mark.parametrize(
+    ("end", "told"),
+    [
+        ({"highest": math.inf}, "highest=inf: it must be positive and finite, in Hz"),
+        ({"highest": math.nan}, "highest=nan: it must be positive and finite, in Hz"),
+        ({"highest": "1 kHz"}, 'highest="1 kHz": it must be positive and finite, in Hz'),
+        ({"speed": -1.0}, "speed=-1: it must be positive and finite, in r/min"),
+        ({"orders": (1, 0)}, "orders=0: it must be positive and finite"),
+    ],
+)
+def test_ends_of_the_campbell_diagram(rig, end, told):
+    with pytest.raises(ParameterError, match=f"^{told}$"):
+        campbell(rig, **end)
+
+
 def test_of_several_pairs_orders_of_the_first_are_told():
     found = hb.modes("back_to_back")
     said = "mesh frequency and orders of first.gear_mesh"

@@ -1,5 +1,6 @@
 """Pictures of run-ups: units, orders, what is cut; and that steady runs have none."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from herringbone.analysis.figures.runup import rotation, tracked
 from herringbone.core import ParameterError
 from herringbone.plotting.runs.pictures import write_pictures
 from herringbone.plotting.runs.runup import run_up
+from herringbone.plotting.runs.spectra import spectra
 
 FORCE = "gearbox.bearing_supports.shaft.pinion_left.f_y"
 SPEED = "gearbox.gear_mesh.pinion.w"
@@ -48,6 +50,15 @@ def test_a_reversal_ends_what_turns_in_one_direction(runup):
     assert found.time[-1] == time[-1]
     assert (np.diff(found.speed) > 0.0).all()
     assert tracked(turned, FORCE).cut(1.0) == pytest.approx(3.0, rel=1e-3)
+
+
+def test_ends_of_pictures(runup):
+    with pytest.raises(ParameterError, match=r"^highest=nan: it must be positive, in Hz$"):
+        run_up(runup, highest=math.nan)
+    with pytest.raises(ParameterError, match=r"^order=inf: it must be positive and finite$"):
+        run_up(runup, order=math.inf)
+    with pytest.raises(ParameterError, match=r"^highest=-1: it must be positive, in Hz$"):
+        spectra(runup, -1.0)
 
 
 def test_picture_has_a_row_per_column_with_units(runup):

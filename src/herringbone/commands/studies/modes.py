@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +13,7 @@ from herringbone.commands.options import (
 )
 from herringbone.commands.output import check_writable, say, show, written_into
 from herringbone.core import ParameterError
-from herringbone.core.frequencies import HIGHEST
+from herringbone.core.frequencies import HIGHEST, check_end
 from herringbone.core.places.files import write_whole
 
 if TYPE_CHECKING:
@@ -62,10 +61,8 @@ def run(options: argparse.Namespace) -> int:
 
     if (options.shapes or options.animate) and options.output is None:
         raise ParameterError("--shapes and --animate draw; add -o FOLDER")
-    for name, unit in (("highest", "Hz"), ("speed", "r/min")):
-        end = getattr(options, name)
-        if not (math.isfinite(end) and end > 0.0):
-            raise ParameterError(f"--{name} {end:g}: it must be positive and finite, in {unit}")
+    check_end("highest", options.highest)
+    check_end("speed", options.speed, "r/min")
     if options.output:
         check_writable(options.output)
     found = modes(

@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from herringbone.analysis.anatomy import orders_told
 from herringbone.analysis.modes.natural_modes import NaturalModes
-from herringbone.core.frequencies import HIGHEST
+from herringbone.core.frequencies import HIGHEST, check_end
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, new_figure, styled
 
 HIGHEST_SPEED = 3000.0
@@ -39,7 +39,14 @@ def campbell(
         highest: frequency up to which modes are shown [Hz].
         speed: highest one [r/min].
         orders: of the mesh.
+
+    Raises:
+        ParameterError: frequency, speed or an order is not positive and finite.
     """
+    check_end("highest", highest)
+    check_end("speed", speed, "r/min")
+    for order in orders:
+        check_end("orders", order, "")
     shown = np.flatnonzero(found.frequency_hz <= highest)
     above = found.rates.size - shown.size
     beyond = f", {above} modes above {highest:g} Hz not shown" if above else ""

@@ -19,6 +19,7 @@ from herringbone.analysis.figures.runup import (
 )
 from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
+from herringbone.core.frequencies import check_end
 from herringbone.plotting.maps import decibels_map, order_rays
 from herringbone.plotting.panels import headline
 from herringbone.plotting.style import legend, new_figure, scaled_unit, styled
@@ -46,8 +47,12 @@ def run_up(
         block: mesh periods in a block of order tracking.
 
     Raises:
-        ParameterError: the speed does not change, or see `analysis.figures.runup`.
+        ParameterError: the speed does not change, an end is not positive, or see
+            `analysis.figures.runup`.
     """
+    if highest is not None:
+        check_end("highest", highest, finite=False)
+    check_end("order", order, "")
     result = result.uniform()
     if not speed_changes(result):
         raise ParameterError(f"system '{result.info.system}' records no change of speed")

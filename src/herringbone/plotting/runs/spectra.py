@@ -8,7 +8,7 @@ from herringbone.analysis.figures.operating_point import run_mesh_frequency, ste
 from herringbone.analysis.figures.radiated_power import LABEL, level_db
 from herringbone.analysis.figures.radiated_power import radiated_power as power_of
 from herringbone.core import ParameterError
-from herringbone.core.frequencies import HIGHEST
+from herringbone.core.frequencies import HIGHEST, check_end
 from herringbone.plotting.panels import (
     DECADES,
     MM,
@@ -32,8 +32,9 @@ def spectra(result: Result, highest: float = HIGHEST) -> Figure:
         highest: end of the spectra [Hz].
 
     Raises:
-        ParameterError: the system records neither.
+        ParameterError: the system records neither, or the end is not positive.
     """
+    check_end("highest", highest, finite=False)
     result = result.uniform()
     shown = []
     for channel, axes, what, factor, unit in (
