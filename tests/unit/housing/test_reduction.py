@@ -10,7 +10,7 @@ from support.housing import seat_points, small_housing
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.housing import write_housing
 from herringbone.housing.files.validation import housing_warnings
-from herringbone.housing.modal_model import ModalHousing
+from herringbone.housing.modal_model import SEAT_DOFS, ModalHousing
 from herringbone.housing.reduction.bound import receptance_bound
 from herringbone.housing.reduction.error import check_certificate, drive_point_errors
 from herringbone.housing.reduction.reduce import reduce_model
@@ -146,6 +146,8 @@ def test_refusals():
     indefinite = mass.tolil()
     indefinite[3, 7] = indefinite[7, 3] = 2.0
     assert "mass matrix is not positive definite" in refused(mass=indefinite.tocsr())
+    for most in (11, 1, 0):
+        assert f"most_modes = {most}: the 12 seat directions" in refused(most_modes=most)
     text = refused(band_hz=9000.0, most_modes=40)
     assert "28 modes, to 5655 Hz, do not certify 9000 Hz within 0.05" in text
 
@@ -265,6 +267,16 @@ def test_rigid_body_modes_alone():
     rigid = small_housing(kind=("rigid",) * 20, frequency_hz=np.zeros(20), residual=None)
     with pytest.raises(ParameterError, match="have rigid-body modes only; there is nothing to red"):
         reduce_housing(rigid, band_hz=600.0, tolerance=0.05)
+
+
+def test_a_seat_that_does_not_move_along_an_axis():
+    """Its error over its compliance is 0 / 0, which no tolerance excludes."""
+    full = as_housing(reduce_model(*bar(240), band_hz=BAND, tolerance=0.05), BAND)
+    shapes = full.shapes.copy()
+    shapes[SEAT_DOFS.index(("wheel_left", "x"))] = 0.0
+    told = "^seat wheel_left does not move along x in any oscillator"
+    with pytest.raises(ParameterError, match=told):
+        reduce_housing(replace(full, shapes=shapes), band_hz=1000.0, tolerance=0.2)
 
 
 def test_residual_matrix_is_reduced_and_written(tmp_path):

@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.linalg as la
 
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.process.telling import Tell, untold
 from herringbone.housing.eigenmodes import Factorisation, Modes, eigenmodes
 from herringbone.housing.modal_model import SEAT_DOFS
@@ -100,11 +100,16 @@ def reduce_model(
         progress: called with what begins.
 
     Raises:
-        HerringboneError: sizes differ, not symmetric, singular, or more oscillators are needed
-            than allowed.
+        HerringboneError: sizes differ, not symmetric, singular, more oscillators are needed than
+            allowed, or fewer are allowed than there are seat directions.
     """
     model = held_model(stiffness, mass, seat_input)
     seats, goal = model.seats, Goal(band_hz, tolerance, most_modes)
+    if len(seats) > most_modes < len(SEAT_DOFS):
+        raise ParameterError(
+            f"most_modes = {most_modes}: the {len(SEAT_DOFS)} seat directions take a residual mode "
+            f"each; allow {len(SEAT_DOFS)} at least"
+        )
     progress("factor the stiffness matrix")
     factorisation = Factorisation(model.stiffness)
     try:

@@ -36,11 +36,12 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
 
     Raises:
         ParameterError: band or tolerance out of range, or beyond what the data are good for, or
-            no elastic oscillator.
+            no elastic oscillator; or a seat direction has no static compliance.
     """
     before = certified_bound(housing, band_hz)
     _check_request(housing, band_hz, tolerance, before)
     full = with_residual_modes(housing)
+    _check_moving(full)
     order = _order(full)
     chosen = choose_modes(
         full.frequency_hz[order],
@@ -109,6 +110,17 @@ def _check_request(housing: ModalHousing, band_hz: float, tolerance: float, befo
         raise ParameterError(
             f"tolerance {tolerance:g}: the data themselves are certified to {before:.2g} only at "
             f"{band_hz:g} Hz"
+        )
+
+
+def _check_moving(housing: ModalHousing) -> None:
+    """Raise ParameterError for a seat that cannot move along an axis, as if nobody measured it."""
+    still = np.flatnonzero(np.diag(housing.static_compliance()) <= 0.0)
+    if still.size:
+        seat, axis = SEAT_DOFS[still[0]]
+        raise ParameterError(
+            f"seat {seat} does not move along {axis} in any oscillator: errors are told over its "
+            "static compliance, which is 0; measure that, too, or use the data as they are"
         )
 
 
