@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import math
+import re
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 from pathlib import Path
@@ -12,6 +13,7 @@ from herringbone.core import ParameterError
 from herringbone.core.declaring.units import R_MIN
 
 _SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
+_QUOTED = re.compile(r'"([^"]*)"=(.*)', re.DOTALL)
 _WHOLE = 2.0**53
 """Up to here doubles hold all whole numbers."""
 _MOST = 2**64
@@ -129,8 +131,8 @@ def add_start_values(sub: argparse.ArgumentParser, varied: str = "") -> None:
         action="append",
         default=[],
         metavar=_SET,
-        help=f"start value in SI units, of an FMU in its own, instead of the scene's; {varied}may "
-        "be repeated",
+        help=f"start value in SI units, of an FMU in its own, instead of the scene's; {varied}a "
+        "name with = stands in quotes; may be repeated",
     )
 
 
@@ -279,6 +281,8 @@ def files_of_parts(options: argparse.Namespace) -> PartFiles:
 def assignments(items: Sequence[str], option: str, form: str) -> dict[str, str]:
     """Names and values of the items NAME=VALUE of an option.
 
+    A name that has a "=", as variables of FMUs may, stands in quotes: "NAME"=VALUE.
+
     Args:
         items: as given.
         option: its name.
@@ -289,8 +293,9 @@ def assignments(items: Sequence[str], option: str, form: str) -> dict[str, str]:
     """
     found = {}
     for item in items:
-        name, equals, value = item.partition("=")
-        if not equals or not name or not value:
+        quoted = _QUOTED.fullmatch(item)
+        name, value = quoted.groups() if quoted else item.partition("=")[::2]
+        if not name or not value or name[0] == '"':
             raise ParameterError(f"{option} {item}: it must be {form}")
         found[name] = value
     return found

@@ -78,9 +78,14 @@ def setting(path: str, value: float | str) -> str:
 def settings(values: Mapping[str, float | str]) -> str:
     """Values of variables that are set together, see `setting`: an option each, or one argument."""
     if _as_options[0]:
-        return " ".join(f"--set {path}={_shown(value)}" for path, value in values.items())
+        return " ".join(f"--set {_name(path)}={_shown(value)}" for path, value in values.items())
     entries = ", ".join(f'"{path}": {_shown(value)}' for path, value in values.items())
     return f"values={{{entries}}}"
+
+
+def _name(path: str) -> str:
+    """A name as the command line takes it, and shells leave it: quoted if it has a = itself."""
+    return f"'\"{path}\"'" if "=" in path else path
 
 
 def _shown(value: float | str | bool | None) -> str:

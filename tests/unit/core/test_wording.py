@@ -41,6 +41,7 @@ def test_values_that_are_set_together_are_one_argument():
     assert settings(pair) == 'values={"gear.flank": 1, "bearings.flank": ...}'
     with words_of_commands():
         assert settings(pair) == "--set gear.flank=1 --set bearings.flank=..."
+        assert settings({"p.a=b": 2.0}) == """--set '"p.a=b"'=2"""
 
 
 @pytest.mark.parametrize(

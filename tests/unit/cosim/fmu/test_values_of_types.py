@@ -23,6 +23,14 @@ def test_digits_of_bytes_that_read_as_a_number_are_refused():
     assert as_value("Binary", *start_values(['p.b="0102"']).values(), "p.b") == b"\x01\x02"
 
 
+def test_names_with_an_equals_sign_stand_in_quotes():
+    assert start_values(['"p.a = b"=2', 'p.s="x=1"']) == {"p.a = b": 2.0, "p.s": "x=1"}
+    assert start_values(['"p.a=b"="2"']) == {"p.a=b": "2"}
+    for wrong in ('"p.a=b"', '""=2', '"p.a=b"='):
+        with pytest.raises(ParameterError, match=f"^--set {wrong}: it must be INSTANCE.VARIABLE="):
+            start_values([wrong])
+
+
 @pytest.mark.parametrize(
     ("text", "value"),
     [
