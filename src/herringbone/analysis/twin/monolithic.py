@@ -24,7 +24,7 @@ from herringbone.core.caching.keys import digest_of
 from herringbone.core.caching.remembered import Remembered
 from herringbone.core.process.activity import activity
 from herringbone.cosim.structure.network import Network, build_network
-from herringbone.cosim.structure.system import System
+from herringbone.cosim.structure.system import PartSpec, System
 
 TOLERANCE = 1e-10
 """Relative tolerance of the twin."""
@@ -73,14 +73,20 @@ def make_instances(system: System) -> list[Instance]:
         ParameterError, ResourceError: bad values.
     """
     refuse_foreign_parts(system)
-    instances = []
-    for spec in system.parts:
-        instance = Instance(component(str(spec.component)), spec.name)
-        for name, value in spec.values.items():
-            instance.set(name, value)
-        instance.initialise()
-        instances.append(instance)
-    return instances
+    return [make_instance(spec) for spec in system.parts]
+
+
+def make_instance(spec: PartSpec) -> Instance:
+    """Instance of a part's component, values set and initialised.
+
+    Raises:
+        ParameterError, ResourceError: bad values.
+    """
+    instance = Instance(component(str(spec.component)), spec.name)
+    for name, value in spec.values.items():
+        instance.set(name, value)
+    instance.initialise()
+    return instance
 
 
 def _network(system: System, instances: list[Instance]) -> Network:

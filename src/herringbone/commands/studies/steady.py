@@ -124,7 +124,8 @@ def _sensitivities(
 ) -> dict[str, dict[str, "Sensitivity"]]:
     """By group and parameter; none, with a line, where there are none."""
     from herringbone.analysis.steady.of_runs.settled import UNTOLD, SettledState  # noqa: PLC0415
-    from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed  # noqa: PLC0415 (numba)
+    from herringbone.analysis.steady.sensitivities.assumed import assumed  # noqa: PLC0415
+    from herringbone.analysis.steady.sensitivities.changes import Changes  # noqa: PLC0415 (numba)
     from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities  # noqa: PLC0415
 
     if options.sensitivities is None or not state.found:
@@ -132,10 +133,14 @@ def _sensitivities(
     if isinstance(state, SettledState):
         say(UNTOLD)
         return {}
-    names = assumed(state.structure.system, options.sensitivities)
     changes = Changes()
+    every = assumed(state.structure.system, options.sensitivities)
+    names, others = changes.alone(state.structure, every)
+    if others:
+        say(others)
     try:
-        return {group: sensitivities(state, group, names, changes) for group in state.channels}
+        groups = state.channels if names else ()
+        return {group: sensitivities(state, group, names, changes) for group in groups}
     except ParameterError as error:
         say(str(error))
         return {}

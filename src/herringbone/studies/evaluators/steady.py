@@ -13,7 +13,8 @@ from herringbone.analysis.steady.of_runs.settled import SettledState
 from herringbone.analysis.steady.operating_point import Point as SteadyPoint
 from herringbone.analysis.steady.searching.guess import Guess, Neighbour
 from herringbone.analysis.steady.searching.remarks import GROWS
-from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed
+from herringbone.analysis.steady.sensitivities.assumed import assumed
+from herringbone.analysis.steady.sensitivities.changes import Changes
 from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.analysis.steady.solver import AUTO, SteadySolver
 from herringbone.analysis.steady.state import BALANCE, SHOOTING, SteadyState
@@ -120,10 +121,9 @@ class _States:
             return Evaluated(outcome, "; ".join(told), state=left)  # no run has its figures
         figures = figures_of(found, self._asked.columns)
         if self._asked.sensitivities is not None:
-            try:
-                figures |= self._sensitivities(found, self._asked.sensitivities)
-            except ParameterError as error:
-                told.append(str(error))
+            more, why = self._sensitivities(found, self._asked.sensitivities)
+            figures |= more
+            told += why
         return Evaluated(outcome, "; ".join(told), figures, left)
 
     def _from(self, near: _Near, at: dict[str, float], values: Point) -> SteadyState:
@@ -151,14 +151,23 @@ class _States:
             state = Neighbour(guess, meshes, SteadyPoint(*at), state)
         return self._begun(told["first"])._replace(state=state)
 
-    def _sensitivities(self, state: SteadyState, patterns: tuple[str, ...]) -> dict[str, Figure]:
-        """By group and parameter; raises ParameterError if there are none."""
-        names = assumed(state.structure.system, patterns)
-        return {
-            f"{group}{SENSITIVITY}{name}": Figure(found.relative, "1")
-            for group in state.channels
-            for name, found in sensitivities(state, group, names, self._changes).items()
-        }
+    def _sensitivities(
+        self, state: SteadyState, patterns: tuple[str, ...]
+    ) -> tuple[dict[str, Figure], list[str]]:
+        """By group and parameter, and what is to be told of those that have none."""
+        told: list[str] = []
+        try:
+            every = assumed(state.structure.system, patterns)
+            names, others = self._changes.alone(state.structure, every)
+            told += [others] if others else []
+            figures = {
+                f"{group}{SENSITIVITY}{name}": Figure(found.relative, "1")
+                for group in state.channels
+                for name, found in sensitivities(state, group, names, self._changes).items()
+            }
+        except ParameterError as error:
+            return {}, [*told, str(error)]
+        return figures, told
 
     def _split(self, point: Point) -> tuple[dict[str, float], Point]:
         """Speed and torque that the solver takes itself, and values of variables."""

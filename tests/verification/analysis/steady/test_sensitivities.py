@@ -7,6 +7,7 @@ from support.steady import STILL
 import herringbone as hb
 from herringbone.analysis.steady.operating_point import Point
 from herringbone.analysis.steady.sensitivities.assumed import assumed
+from herringbone.analysis.steady.sensitivities.changes import BoundError, Changes
 from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.components.registry import COMPONENTS
 from herringbone.running.operating.steady import prepared_solver
@@ -141,3 +142,30 @@ def test_at_the_end_of_a_range_and_of_whole_numbers():
     assert np.isfinite(found["gear_mesh.pinion.torque_share_left"].relative)
     named = assumed(state.structure.system, ["gear_mesh.*"])
     assert not [n for n in named if n.endswith(("number_of_teeth", "damping_gate"))]
+
+
+PAIR = ("pinion.base_radius", "wheel.base_radius", "base_helix_angle", "face_width")
+ORDERS = [*(f"diesel.order_{k}.order" for k in range(1, 5)), "water.order_1.order"]
+
+
+@pytest.mark.parametrize(
+    ("system", "bound"),
+    [
+        ("test_rig", [f"{GEAR}.{name}" for name in PAIR]),
+        ("ship", [*ORDERS, *(f"{GEAR}.{name}" for name in PAIR)]),
+    ],
+)
+def test_parameters_that_others_have_to_follow_are_left_out(system, bound):
+    """They are those whose change `steady` refuses, or after which the period is another one."""
+    structure = hb.steady(system, values=SMOOTH).structure
+    every = [n for n in assumed(structure.system, ["*"]) if n.startswith((GEAR, "diesel", "water"))]
+    kept, line = Changes().alone(structure, every)
+    assert line.startswith(f"no sensitivities of {', '.join(bound)}: changed alone, ")
+    assert kept == [n for n in every if n not in bound]
+    assert len(kept) > 10
+
+
+def test_a_parameter_that_others_have_to_follow_is_named():
+    state = hb.steady("test_rig", values=STILL)
+    with pytest.raises(BoundError, match=r"pinion\.base_radius cannot be changed alone, .* do not"):
+        sensitivities(state, "bearing_force", ["gearbox.gear_mesh.pinion.base_radius"])

@@ -29,7 +29,7 @@ from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.outputs import level_of
 from herringbone.analysis.steady.searching.guess import motion_at, several
 from herringbone.analysis.steady.sensitivities.adjoint import adjoint_by_families
-from herringbone.analysis.steady.sensitivities.assumed import Changes, Moved
+from herringbone.analysis.steady.sensitivities.changes import Changes, Moved
 from herringbone.analysis.steady.sensitivities.following_speed import following_speed
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure, alternating_rows
@@ -64,8 +64,8 @@ def sensitivities(
         changes: of one caller, who asks for several levels or operating points.
 
     Raises:
-        ParameterError: a parameter is zero, or the adjoint equations of a long period are not
-            solved.
+        ParameterError: a parameter is zero, or cannot be changed alone, or the adjoint equations
+            of a long period are not solved.
     """
     columns, moved = state.chosen(level), changes or Changes()
     with one_blas_thread():

@@ -86,14 +86,22 @@ def periodic_arguments(twin: Twin, parts: Sequence[int]) -> Iterator[tuple[int, 
     at = 0
     for p in parts:
         instance = twin.instances[p]
+        for argument, turns in periods_of(instance):
+            yield p, at + argument, turns
         laws = laws_of(instance)
         assert laws is not None
-        block = instance.block.copy()
-        laws.prepare(block)
-        laws.settle(block)
-        for argument, turns in laws.periods(block):
-            yield p, at + argument, turns
         at += len(laws.arguments)
+
+
+def periods_of(instance: Instance) -> tuple[tuple[int, Fraction], ...]:
+    """Arguments with which a part's laws repeat, and after how many turns; none without laws."""
+    laws = laws_of(instance)
+    if laws is None:
+        return ()
+    block = instance.block.copy()
+    laws.prepare(block)
+    laws.settle(block)
+    return tuple(laws.periods(block))
 
 
 def settle_laws(twin: Twin, blocks: np.ndarray, ramp: float = 0.0) -> None:
