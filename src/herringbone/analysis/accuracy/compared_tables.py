@@ -10,7 +10,7 @@ import pandas as pd
 
 from herringbone.analysis.accuracy.apart import Apart, differences
 from herringbone.analysis.accuracy.common_ground import Sides
-from herringbone.analysis.figures.operating_point import run_mesh_frequency
+from herringbone.analysis.figures.operating_point import no_mesh_frequency, run_mesh_frequency
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitudes_at_multiples
 from herringbone.analysis.figures.standstill import stands_still
 from herringbone.components.registry import COMPONENTS
@@ -93,7 +93,8 @@ def table_of_orders(
     for side in (ours, theirs):
         rows, mesh = side.part.rows, run_mesh_frequency(side.result, part=side.part)
         if mesh is None or rows.stop - rows.start < FEWEST_SAMPLES:
-            return pd.DataFrame(columns=names), (f"{side.name} has no steady mesh frequency",)
+            why = no_mesh_frequency(side.result)
+            return pd.DataFrame(columns=names), (f"{side.name} has {why}",)
         meshes.append(mesh)
     found = []
     for name, columns in groups.items():

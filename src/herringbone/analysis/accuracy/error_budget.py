@@ -21,7 +21,11 @@ import numpy as np
 from herringbone.analysis.accuracy.beyond import share_beyond
 from herringbone.analysis.asked import group, has_own, resource_file, signal
 from herringbone.analysis.figures.modal_response import housing_of
-from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.figures.operating_point import (
+    no_mesh_frequency,
+    run_mesh_frequency,
+    steady_part,
+)
 from herringbone.analysis.stability.recommendation import (
     SOURCE,
     contact_floor,
@@ -76,7 +80,7 @@ def _tables(result: Result) -> Iterator[BudgetRow]:
             continue
         lines = _lines(result, gear, len(stated.harmonics))
         if lines is None:
-            why = "no steady mesh frequency, or too few mesh periods, to weigh the harmonics with"
+            why = f"{_no_lines(result, gear)}, to weigh the harmonics with"
             yield BudgetRow(source, _FORCE, None, Known.UNKNOWN, why)
             continue
         share = stated.harmonics / np.maximum(stated.amplitudes, stated.harmonics)
@@ -110,6 +114,15 @@ def _lines(result: Result, gear: str, count: int) -> np.ndarray | None:
     found = np.abs(turns @ forces) * 2.0 / forces.shape[0]
     lines = np.linalg.norm(found, axis=1)
     return lines if lines.any() else None
+
+
+def _no_lines(result: Result, gear: str) -> str:
+    """Why bearing forces have no lines at mesh harmonics."""
+    if not group(result, _CHANNEL):
+        return "no bearing forces"
+    if run_mesh_frequency(result, gear=gear):
+        return "too few mesh periods, or nothing in them"
+    return no_mesh_frequency(result, gear)
 
 
 def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:

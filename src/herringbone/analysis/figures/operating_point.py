@@ -106,6 +106,20 @@ def run_mesh_frequency(
     return frequency if frequency * (time[-1] - time[0]) >= 1.0 else None
 
 
+def no_mesh_frequency(result: Result, gear: str = "") -> str:
+    """Why a run tells no mesh frequency, where `run_mesh_frequency` is None.
+
+    Args:
+        result: of a run.
+        gear: name of the gear pair; the first one if not given.
+    """
+    for pair in (gear,) if gear else result.parts_with(Role.GEAR_PAIR)[:1]:
+        speed = result.info.anatomy.column(pair, Quantity.SPEED, "pinion")
+        if speed is not None and speed not in result.data:
+            return f"no mesh frequency, as {speed} is not recorded"
+    return "no steady mesh frequency"
+
+
 def _teeth(result: Result, gear: str) -> float | None:
     return parameter(result, gear, Quantity.NUMBER_OF_TEETH, "pinion")
 

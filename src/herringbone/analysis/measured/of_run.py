@@ -4,7 +4,11 @@ import math
 from pathlib import Path
 
 from herringbone.analysis.asked import of_both_gears
-from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.figures.operating_point import (
+    no_mesh_frequency,
+    run_mesh_frequency,
+    steady_part,
+)
 from herringbone.analysis.figures.sensing.sensors import sensor_figures
 from herringbone.analysis.figures.sensing.velocity_sensor import sensor_velocity
 from herringbone.analysis.gearboxes import gearbox_of_sensor
@@ -32,7 +36,7 @@ def predicted_of(result: Result, sensor: str) -> Predicted:
     mesh = run_mesh_frequency(result)
     if teeth is None or mesh is None:
         raise ParameterError(
-            f"system '{result.info.system}': the run has no steady mesh frequency, with which "
+            f"system '{result.info.system}': the run has {no_mesh_frequency(result)}, with which "
             "lines could be told"
         )
     even = result.uniform()

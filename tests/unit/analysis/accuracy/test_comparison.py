@@ -53,6 +53,15 @@ def test_differences_levels_and_orders(first, second):
     assert (found.begin, found.end) == (0.0, 0.2)
 
 
+def test_a_speed_that_is_not_recorded_is_named(first, second):
+    speed = "gearbox.gear_mesh.pinion.w"
+    found = hb.compare(replace(first, data=first.data.drop(columns=speed)), second)
+    assert found.orders.empty
+    assert [
+        n for n in found.notes if n.endswith(f"has no mesh frequency, as {speed} is not recorded")
+    ]
+
+
 def test_a_difference_of_phase_alone_is_told(second):
     """The same forces a quarter of a mesh period later: 90 deg at f_m, sqrt(2) times the level."""
     columns = second.channel(FORCES)

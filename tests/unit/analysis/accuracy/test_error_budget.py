@@ -138,6 +138,19 @@ def test_tables_that_nothing_is_known_of(table, change, why):
     assert why in found.how
 
 
+@pytest.mark.parametrize(
+    ("left_out", "why"),
+    [
+        ("gear_mesh.pinion.w", "no mesh frequency, as gear_mesh.pinion.w is not recorded, to"),
+        ("bearing_supports.shaft.", "no bearing forces, to"),
+    ],
+)
+def test_what_is_missing_of_the_run_is_named(table, left_out, why):
+    result = result_with(table)
+    data = result.data.drop(columns=[c for c in result.data if c.startswith(left_out)])
+    assert row(error_budget(replace(result, data=data)), TABLE).how.startswith(why)
+
+
 # -- coupling, inner steps, housing ---------------------------------------------------------------
 
 
