@@ -15,9 +15,7 @@ from herringbone.studies.planning.plan import Plan, plan
 from herringbone.studies.planning.text import plan_text
 
 _CHOSEN = ("algorithm", "step", "tolerance", "fuse", "record", "slow", "start", "t_end")
-_OF_RUNS = (
-    "verify", "reference", "parquet", "record_step", "fmu", "no_pictures", "no_probe", "overwrite",
-)  # fmt: skip
+_OF_RUNS = ("verify", "reference", "parquet", "record_step", "fmu", "no_probe")
 """What a steady state has no use for."""
 
 
@@ -82,7 +80,7 @@ def run_steady(options: argparse.Namespace, found: Plan) -> OutcomeKind:
     if isinstance(state, SteadyState) and state.converged:
         for line in answers(state, found.scene.asks):
             say(line)
-    tell(state, {}, options.output, as_json=options.json)
+    tell(state, {}, options.output, as_json=options.json, pictures=not options.no_pictures)
     return OutcomeKind.COMPLETED if state.converged else OutcomeKind.DIVERGED
 
 

@@ -21,6 +21,7 @@ from herringbone.commands.options import (
 )
 from herringbone.commands.output import check_writable, say, show
 from herringbone.core import ParameterError
+from herringbone.result.folder.names import STEADY_PICTURE
 
 if TYPE_CHECKING:
     from herringbone.analysis.steady.of_runs.settled import SettledState
@@ -90,8 +91,9 @@ def tell(
     spread: float = 1.0,
     *,
     as_json: bool,
+    pictures: bool = True,
 ) -> None:
-    """Write files and pictures if a folder is given, and show a state.
+    """Write files, and pictures if they are wanted, if a folder is given, and show a state.
 
     Raises:
         HerringboneError: files cannot be written.
@@ -104,12 +106,14 @@ def tell(
     )
 
     written = write_steady(state, folder) if folder else []
-    if folder and state.found:
+    if folder and state.found and pictures:
         from herringbone.plotting.studies.pictures import (  # noqa: PLC0415 (matplotlib: lazy)
             write_steady_pictures,
         )
 
         written += write_steady_pictures(state, found, folder, spread)
+    elif folder:
+        (folder / STEADY_PICTURE).unlink(missing_ok=True)  # of a state before this one
     if as_json:
         told = {g: {n: x.relative for n, x in own.items()} for g, own in found.items()}
         more = {"sensitivities": told} if told else {}

@@ -10,7 +10,7 @@ from herringbone.running import api
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.commanded import commanded, operated, with_known_values
 from herringbone.running.prepared import Wishes
-from herringbone.scenes import Ask, Scene
+from herringbone.scenes import Ask, Operating, Scene
 from herringbone.scenes.scene_text import scene_text
 
 POINT = {"speed": 157.0, "torque": 350.0}
@@ -57,9 +57,8 @@ def test_the_command_gives_them_in_its_own_units(monkeypatch, tmp_path, capsys):
 
 @pytest.mark.parametrize(
     "option",
-    ["--verify", "--reference", "--parquet", "--record-step=1e-4", "--fmu=python", "--no-pictures",
-     "--no-probe", "--overwrite"],
-)  # fmt: skip
+    ["--verify", "--reference", "--parquet", "--record-step=1e-4", "--fmu=python", "--no-probe"],
+)
 def test_a_planned_steady_state_takes_no_option_of_a_run(option, tmp_path, capsys, monkeypatch):
     """It is refused before anything is planned."""
     monkeypatch.setattr("herringbone.commands.run.planned.plan", pytest.fail)
@@ -69,3 +68,18 @@ def test_a_planned_steady_state_takes_no_option_of_a_run(option, tmp_path, capsy
     name = option.partition("=")[0]
     why = "of a run over time; scene asking asks of steady states, so leave it out"
     assert capsys.readouterr().err == f"herringbone: {name}: {why}\n"
+
+
+def test_a_planned_steady_state_is_drawn_unless_that_is_left_out(tmp_path, capsys):
+    """Its files are overwritten as those of `steady`; a picture of another state does not stay."""
+    still = {"gear_mesh.symmetry_deviation": 0.0}
+    file, folder = tmp_path / "asking.toml", tmp_path / "found"
+    asks = (Ask(("bearing force",), tolerance=0.1),)
+    scene = Scene("asking", values=still, asks=asks, operating=Operating(speed=(136.0, 136.0)))
+    file.write_text(scene_text(scene), encoding="utf-8")
+    command = ["run", "test_rig", "--scene", str(file), "--plan", "-o", str(folder)]
+    assert main(command) == 0
+    assert (folder / "steady.png").is_file()
+    assert main([*command, "--overwrite", "--no-pictures"]) == 0
+    assert sorted(f.name for f in folder.iterdir()) == ["orders.csv", "steady.json"]
+    assert "steady.png" not in capsys.readouterr().out.rpartition("Steady state")[2]
