@@ -4,6 +4,7 @@ import logging
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 from herringbone.analysis.anatomy import anatomy
@@ -60,12 +61,16 @@ def load_system(reference: str | Path) -> tuple[System, Path]:
     if is_ssp(Path(reference)):
         return load_ssp(Path(reference)), Path(reference)
     if shipped_before_own(reference):
-        _LOG.warning(
-            "%s: the shipped system is taken; the one in the working folder is ./%s",
-            reference,
-            reference,
-        )
+        _tell_shipped(str(reference), Path.cwd())
     return read_system(reference), find_system(reference)
+
+
+@cache
+def _tell_shipped(name: str, _folder: Path) -> None:
+    """Say once in a working folder that a name is that of a shipped system, too."""
+    _LOG.warning(
+        "%s: the shipped system is taken; the one in the working folder is ./%s", name, name
+    )
 
 
 def system_and_folder(system: str | Path | System) -> tuple[System, Path]:

@@ -133,7 +133,8 @@ def test_a_path_is_no_name_of_a_shipped_system(tmp_path, monkeypatch, caplog, pa
     )
     assert load_system(path)[0].name == "mine"
     assert not caplog.records
-    assert load_system("gearbox")[0].name == "gearbox"
+    for _ in range(2):
+        assert load_system("gearbox")[0].name == "gearbox"
     (record,) = caplog.records
     assert "the one in the working folder is ./gearbox" in record.getMessage()
 
