@@ -84,8 +84,8 @@ def _in_a_cycle(result: Result) -> Result:
     time = result.outcome.time
     message = (
         f"ran to {time:.4g} s, but its step was told to be unstable, and corrections of the forces "
-        f"did not meet: the motion is one of the coupling; use a step below "
-        f"{result.info.communication_step:g} s or an algorithm with a higher limit"
+        "did not meet: the motion is one of the coupling; use a step below the limit, or an "
+        "algorithm with a higher one; 'herringbone stability' shows them"
     )
     outcome = Outcome(OutcomeKind.UNSTABLE, time, message=message)
     result = _without_settling(result)

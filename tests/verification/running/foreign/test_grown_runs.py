@@ -86,5 +86,6 @@ def test_a_cycle_of_an_unstable_coupling_is_told():
         ended = replace(found, info=replace(found.info, notes=lines[:count]))
         assert with_doubt(ended, system).outcome.kind == kind
     told = with_doubt(ended, system)
+    assert told.outcome.message.endswith("higher one; 'herringbone stability' shows them")
     assert told.info.energy is None
     assert not told.budget
