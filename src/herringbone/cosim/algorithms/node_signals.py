@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from herringbone.core.declaring.declaration import node_name
 from herringbone.core.part import Part, has_nodes
+from herringbone.cosim.held_inputs import order_of_held
 from herringbone.cosim.layouts.derivatives import Derivatives, lay_out_derivatives
 from herringbone.cosim.layouts.slow import slow_degrees
 from herringbone.cosim.structure.network import Network
@@ -27,30 +28,9 @@ def node_degrees(network: Network, degree: int) -> tuple[list[int], list[str]]:
             notes.append(
                 f"{part.name} has no signal nodes: its inputs are held at their mean over a step "
                 "and its outputs interpolated, which makes the coupling "
-                + _order_of_held(part, inputs, outputs)
+                + order_of_held(part, inputs, outputs)
             )
     return found, notes
-
-
-def _order_of_held(part: Part, inputs: Sequence[str], outputs: Sequence[str]) -> str:
-    """Order with a part whose inputs are held: what a mean passes directly is half a step late.
-
-    An element takes the value at the end.
-    """
-    second, first = "second order in the step", "first order in the step"
-    if part.has_states is False:
-        return second
-    passed = [part.variables[name].dependencies for name in outputs]
-    if not all(depends is None or depends.isdisjoint(inputs) for depends in passed):
-        direct = "as inputs pass directly to outputs"
-        if part.has_states:
-            return f"{first}, {direct}"
-        return f"{second}, or first order if it has states, {direct}"
-    if None in passed:
-        return (
-            f"{second}, or first order if it has states and passes inputs directly to its outputs"
-        )
-    return second
 
 
 def _has_output_nodes(part: Part, outputs: Sequence[str], degree: int) -> bool:

@@ -71,9 +71,14 @@ def test_order_of_the_coupling(tmp_path, abilities):
 
 
 def test_who_declares_to_ask_within_a_step_and_never_does_is_told(tmp_path):
-    run = turned(drivetrain(tmp_path, 3, WITHIN, asks=False), STEP, NEVER)
+    """Its inputs are held at their means: second order, where nothing passes them directly."""
+    system = drivetrain(tmp_path, 3, WITHIN, asks=False)
+    coarse, fine = (turned(system, step, NEVER) for step in (2.0 * STEP, STEP))
     said = "says: it declares intermediate update, and asked for no input in"
-    assert sum(said in note for note in run.info.notes) == 2
+    told = [note for note in fine.info.notes if said in note]
+    assert len(told) == 2
+    assert all("makes the coupling second order in the step; what a line" in note for note in told)
+    assert math.log2(error(coarse, NEVER) / error(fine, NEVER)) == pytest.approx(2.0, abs=0.1)
 
 
 @pytest.mark.parametrize("saves", [True, False], ids=["restores", "plain"])

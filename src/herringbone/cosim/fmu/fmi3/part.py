@@ -25,6 +25,7 @@ from herringbone.cosim.fmu.functions import KnownFunctions
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.part import FmuPart
 from herringbone.cosim.fmu.variables import Element, read_elements, resized, untold_arrays
+from herringbone.cosim.held_inputs import order_of_held
 
 _WARNING = 1
 _CALLBACK = fmi3IntermediateUpdateCallback
@@ -306,9 +307,17 @@ class Fmu3Part(FmuPart):
             self._told = True
             said.append(
                 f"it declares intermediate update, and asked for no input in {steps} steps: inputs "
-                "were held at their means, which makes the coupling second order in the step"
+                f"were held at their means, which makes the coupling {self._order_of_held()}; what "
+                "a line on its derivatives says is of FMUs that ask"
             )
         return said
+
+    def _order_of_held(self) -> str:
+        """Order with inputs at their means; all outputs count, as what is coupled is not known."""
+        by_causality: dict[str, list[str]] = {"input": [], "output": []}
+        for name, variable in self.variables.items():
+            by_causality.setdefault(variable.causality, []).append(name)
+        return order_of_held(self, by_causality["input"], by_causality["output"])
 
 
 def _start(element: Element) -> float:
