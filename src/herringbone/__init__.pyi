@@ -19,6 +19,7 @@ from .result.result import Result as Result
 from .running.api import run as run
 from .running.charting.chart import chart as chart
 from .running.exporting.export import build_fmus as build_fmus
+from .running.foreign.housed import foreign_fmus as foreign_fmus
 from .running.operating.flange_stability import flange_stability as flange_stability
 from .running.operating.modes import modes as modes
 from .running.operating.stability import stability as stability

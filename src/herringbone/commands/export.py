@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from herringbone.commands.build import add_platform_options
-from herringbone.commands.options import add_scene, add_start_values, given_by
+from herringbone.commands.options import add_cells, add_scene, add_start_values, given_by
 from herringbone.commands.output import check_writable, show
 from herringbone.core.declaring.hosting import Given
 from herringbone.core.declaring.roles import GEARS
@@ -64,6 +64,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "SYSTEM_fmi3.fmu; a .ssv file with --as-fmu: start values of the scene alone",
     )
     add_start_values(sub)
+    add_cells(sub)
 
 
 def run(options: argparse.Namespace) -> int:
