@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TypeGuard
 
 import numpy as np
 
@@ -171,7 +172,7 @@ class Instance:
         return (f"hidden state {bad[0] + 1}", float(hidden[bad[0]])) if bad.size else None
 
 
-def is_number(value: object) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
     """True for what a real variable takes: no truth value, no complex number, no text."""
     return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
 
