@@ -105,6 +105,8 @@ def _neutral(system: Condensed) -> np.ndarray:
     modes = system.modes
     turns = np.abs(modes.turns).max(axis=0, initial=0.0)
     found = np.flatnonzero(still(modes.rates) & (turns <= _NONE * turns.max(initial=0.0)))
+    if not found.size:
+        return found
     seen = np.abs(modes.arguments[:, found])
     size = np.abs(modes.arguments).max(axis=1, initial=0.0)
     wrong = found[((seen > _NONE * size[:, None]) & _counts(system)[:, None]).any(axis=0)]
@@ -123,7 +125,7 @@ def _counts(system: Condensed) -> np.ndarray:
     modes, equations = system.modes, system.equations
     size = np.abs(equations.c) @ np.abs(modes.rigid)
     counts = ~(np.abs(modes.of_angles) > _NONE * size).any(axis=1)
-    counts[[at for _, at, _ in periodic_arguments(system.twin, equations.laws)]] = True
+    counts[[at for _, at, _ in periodic_arguments(system.twin, equations)]] = True
     return counts
 
 
@@ -155,7 +157,7 @@ def turns_of(system: Condensed, of_angle: np.ndarray) -> tuple[Fraction, ...]:
 
 def _turns(system: Condensed, of_angle: np.ndarray) -> Iterator[Fraction]:
     twin = system.twin
-    for p, argument, turns in periodic_arguments(twin, system.equations.laws):
+    for p, argument, turns in periodic_arguments(twin, system.equations):
         ratio = float(abs(of_angle[argument]))
         whole = Fraction(ratio).limit_denominator(_FINEST)
         if not whole or abs(float(whole) - ratio) > _EXACT * ratio:

@@ -72,19 +72,19 @@ def laws_of(instance: Instance) -> Laws | None:
     return laws
 
 
-def periodic_arguments(twin: Twin, parts: Sequence[int]) -> Iterator[tuple[int, int, Fraction]]:
+def periodic_arguments(twin: Twin, equations: Equations) -> Iterator[tuple[int, int, Fraction]]:
     """Arguments with which laws repeat, such as the angle of a gear pair.
 
     Args:
         twin: the system.
-        parts: numbers of those that have laws.
+        equations: of it.
 
     Yields:
         Number of a part, that of the argument among those of all laws, and the turns of it after
         which the law repeats.
     """
     at = 0
-    for p in parts:
+    for p in equations.laws:
         instance = twin.instances[p]
         for argument, turns in periods_of(instance):
             yield p, at + argument, turns

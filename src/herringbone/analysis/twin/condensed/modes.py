@@ -6,7 +6,7 @@ that no digits are lost to revolutions.
 """
 
 import math
-from collections.abc import Sequence, Set
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,7 +127,7 @@ def make_modes(
     moving = _moving(a, b, twin.turning)
     constant = np.where(moving, 0.0, x0)
     b[:, -1] += a @ constant
-    rigid, references = _rotations(twin, a, references, _seen(twin, equations))
+    rigid, references = _rotations(twin, a, references, equations)
     inside = np.array([i for i in range(n) if moving[i] and i not in references], dtype=int)
     rest = a - rigid @ a[references]
     driven = (b - rigid @ b[references])[inside]
@@ -176,12 +176,12 @@ def _moving(a: np.ndarray, b: np.ndarray, turning: Sequence[int]) -> np.ndarray:
 
 def _seen(twin: Twin, equations: Equations) -> set[int]:
     """States with which laws repeat, such as a gear's angle."""
-    rows = [at for _, at, _ in periodic_arguments(twin, equations.laws)]
+    rows = [at for _, at, _ in periodic_arguments(twin, equations)]
     return set(np.flatnonzero(equations.c[rows].any(axis=0)).tolist())
 
 
 def _rotations(
-    twin: Twin, a: np.ndarray, wanted: Sequence[int], seen: Set[int]
+    twin: Twin, a: np.ndarray, wanted: Sequence[int], equations: Equations
 ) -> tuple[np.ndarray, Sequence[int]]:
     """Rigid rotations (n, k), 1 at its own reference and 0 at those of the others; references.
 
@@ -197,6 +197,7 @@ def _rotations(
         return np.zeros((len(a), 0)), []
     chosen = [turning.index(i) for i in wanted if i in turning]
     if len(chosen) != free.shape[1] or np.linalg.matrix_rank(free[chosen]) < len(chosen):
+        seen = _seen(twin, equations)
         among = [at for at, i in enumerate(turning) if i in seen]
         if np.linalg.matrix_rank(free[among]) < free.shape[1]:
             among = list(range(len(turning)))
