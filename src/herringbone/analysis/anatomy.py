@@ -9,10 +9,10 @@ nothing but flanges: of such a part no role is known.
 from dataclasses import replace
 
 from herringbone.components.registry import COMPONENTS
-from herringbone.core.anatomy import Anatomy, Joint, PartInfo, part_info
 from herringbone.core.caching.remembered import Remembered
+from herringbone.core.declaring.anatomy import Anatomy, Joint, PartInfo, part_info
 from herringbone.core.declaring.roles import Port, PortKind, Quantity, Role
-from herringbone.core.instance import is_number, no_number
+from herringbone.core.given import is_number, no_number
 from herringbone.cosim.structure.system import PartSpec, System
 
 _known: Remembered[Anatomy] = Remembered(64)

@@ -18,7 +18,7 @@ from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError
-from herringbone.core.anatomy import Anatomy
+from herringbone.core.declaring.anatomy import Anatomy
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi

@@ -2,7 +2,9 @@
 
 from collections.abc import Iterable, Mapping
 from os import PathLike
-from typing import Any
+from typing import Any, TypeGuard
+
+import numpy as np
 
 from herringbone.core.errors import ParameterError
 
@@ -56,6 +58,23 @@ def names(given: object, name: str) -> tuple[str, ...]:
 def several(given: object) -> list[Any]:
     """What a list or tuple has; anything else stands for one."""
     return list(given) if isinstance(given, list | tuple) else [given]
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """True for what a real variable takes: no truth value, no complex number, no text."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
+def no_number(where: str, value: object, unit: str) -> ParameterError:
+    """What is said of a value that is no number.
+
+    Args:
+        where: path of the variable.
+        value: it.
+        unit: of the variable.
+    """
+    alone = f" alone, in {unit}" if unit not in {"", "1"} else ""
+    return ParameterError(f"{where} = {value!r}: it takes a number{alone}")
 
 
 def _cut(given: object) -> str:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TypeGuard
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from herringbone.core.declaring.component import Component
 from herringbone.core.declaring.units import quantity
 from herringbone.core.declaring.variable import NODES, Causality, Variable
 from herringbone.core.errors import ParameterError, ResourceError
+from herringbone.core.given import is_number, no_number
 from herringbone.core.names import meant
 from herringbone.core.places.files import is_file
 from herringbone.core.reading.texts import text_key
@@ -170,23 +170,6 @@ class Instance:
         hidden = self.block[len(declaration.states) : declaration.state_count]
         bad = np.flatnonzero(~np.isfinite(hidden))
         return (f"hidden state {bad[0] + 1}", float(hidden[bad[0]])) if bad.size else None
-
-
-def is_number(value: object) -> TypeGuard[float]:
-    """True for what a real variable takes: no truth value, no complex number, no text."""
-    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-
-
-def no_number(where: str, value: object, unit: str) -> ParameterError:
-    """What is said of a value that is no number.
-
-    Args:
-        where: path of the variable.
-        value: it.
-        unit: of the variable.
-    """
-    alone = f" alone, in {unit}" if unit not in {"", "1"} else ""
-    return ParameterError(f"{where} = {value!r}: it takes a number{alone}")
 
 
 def check_value(instance: str, variable: Variable, value: float) -> None:

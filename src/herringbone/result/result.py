@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from herringbone.core import Outcome, ParameterError
-from herringbone.core.anatomy import Anatomy
+from herringbone.core.declaring.anatomy import Anatomy
 from herringbone.core.declaring.roles import Role
 from herringbone.core.facts import Facts
 from herringbone.core.names import shown

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from herringbone.core.anatomy import Anatomy
+from herringbone.core.declaring.anatomy import Anatomy
 from herringbone.core.energy_report import Diagnosis, EnergyReport
 from herringbone.core.sensor_spec import SensorSpec
 

@@ -9,8 +9,13 @@ from herringbone.analysis.set_points import SPEED, TORQUE, addressed
 from herringbone.components.registry import component
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Role
-from herringbone.core.given import check_called, check_mapping, check_reference, check_several
-from herringbone.core.instance import is_number
+from herringbone.core.given import (
+    check_called,
+    check_mapping,
+    check_reference,
+    check_several,
+    is_number,
+)
 from herringbone.core.places.files import as_texts, is_file
 from herringbone.core.process.telling import Tell, untold
 from herringbone.core.wording import speaks_commands

@@ -9,7 +9,7 @@ from random import Random
 
 from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.core import ParameterError
-from herringbone.core.instance import is_number, no_number
+from herringbone.core.given import is_number, no_number
 from herringbone.core.wording import several_values
 
 SET_POINTS = {SPEED: "rad/s", TORQUE: "N.m"}

@@ -11,7 +11,7 @@ from herringbone.analysis.unanswered import unanswered
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import COMPONENTS, component_for, components_for
 from herringbone.core import Declaration, Instance, StructureError, output
-from herringbone.core.anatomy import PartInfo
+from herringbone.core.declaring.anatomy import PartInfo
 from herringbone.core.declaring.roles import HALVES, Port, PortKind, Quantity, Role
 from herringbone.core.declaring.units import RATES
 from herringbone.cosim.structure.rates import rate_of

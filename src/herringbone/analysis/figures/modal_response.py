@@ -8,8 +8,8 @@ import numpy as np
 
 from herringbone.analysis.asked import resource_file
 from herringbone.core import ParameterError
-from herringbone.core.anatomy import Anatomy
 from herringbone.core.caching.remembered import Remembered, content_key
+from herringbone.core.declaring.anatomy import Anatomy
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.housing import SEAT_DOFS, ModalHousing, read_housing
 from herringbone.housing.files.file_format import HEAD, MODES, SHAPES

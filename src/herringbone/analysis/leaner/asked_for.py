@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.core import ParameterError
-from herringbone.core.anatomy import Anatomy
+from herringbone.core.declaring.anatomy import Anatomy
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.core.names import shown
 from herringbone.core.places.part_path import find_columns

@@ -13,7 +13,7 @@ import numpy as np
 from herringbone.analysis.anatomy import anatomy, carrying_flank, value_at
 from herringbone.analysis.modes.natural_modes import NaturalModes
 from herringbone.core import ParameterError
-from herringbone.core.anatomy import Anatomy
+from herringbone.core.declaring.anatomy import Anatomy
 from herringbone.core.declaring.roles import GEARS, HALVES, PortKind, Quantity, Role
 
 _PLACES = {

@@ -9,7 +9,7 @@ from pathlib import Path
 from herringbone.analysis.anatomy import anatomy
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
-from herringbone.core.anatomy import Anatomy
+from herringbone.core.declaring.anatomy import Anatomy
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.core.places.part_path import PartPath
 from herringbone.core.wording import option
