@@ -20,7 +20,6 @@ from herringbone.commands.options import (
     spread_of,
 )
 from herringbone.commands.output import check_writable, say, show
-from herringbone.core import ParameterError
 from herringbone.result.folder.names import STEADY_PICTURE
 
 if TYPE_CHECKING:
@@ -130,21 +129,17 @@ def _sensitivities(
     from herringbone.analysis.steady.of_runs.settled import UNTOLD, SettledState  # noqa: PLC0415
     from herringbone.analysis.steady.sensitivities.assumed import assumed  # noqa: PLC0415
     from herringbone.analysis.steady.sensitivities.changes import Changes  # noqa: PLC0415 (numba)
-    from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities  # noqa: PLC0415
+    from herringbone.analysis.steady.sensitivities.sensitivity import (  # noqa: PLC0415
+        sensitivities_of_groups,
+    )
 
     if options.sensitivities is None or not state.found:
         return {}
     if isinstance(state, SettledState):
         say(UNTOLD)
         return {}
-    changes = Changes()
-    every = assumed(state.structure.system, options.sensitivities)
-    names, others = changes.alone(state.structure, every)
-    if others:
-        say(others)
-    try:
-        groups = state.channels if names else ()
-        return {group: sensitivities(state, group, names, changes) for group in groups}
-    except ParameterError as error:
-        say(str(error))
-        return {}
+    names = assumed(state.structure.system, options.sensitivities)
+    found, told = sensitivities_of_groups(state, names, Changes())
+    for line in told:
+        say(line)
+    return found

@@ -15,7 +15,7 @@ from herringbone.analysis.steady.searching.guess import Guess, Neighbour
 from herringbone.analysis.steady.searching.remarks import GROWS
 from herringbone.analysis.steady.sensitivities.assumed import assumed
 from herringbone.analysis.steady.sensitivities.changes import Changes
-from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
+from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities_of_groups
 from herringbone.analysis.steady.solver import AUTO, SteadySolver
 from herringbone.analysis.steady.state import BALANCE, SHOOTING, SteadyState
 from herringbone.core import OutcomeKind, ParameterError
@@ -155,18 +155,16 @@ class _States:
         self, state: SteadyState, patterns: tuple[str, ...]
     ) -> tuple[dict[str, Figure], list[str]]:
         """By group and parameter, and what is to be told of those that have none."""
-        told: list[str] = []
         try:
-            every = assumed(state.structure.system, patterns)
-            names, others = self._changes.alone(state.structure, every)
-            told += [others] if others else []
-            figures = {
-                f"{group}{SENSITIVITY}{name}": Figure(found.relative, "1")
-                for group in state.channels
-                for name, found in sensitivities(state, group, names, self._changes).items()
-            }
+            names = assumed(state.structure.system, patterns)
         except ParameterError as error:
-            return {}, [*told, str(error)]
+            return {}, [str(error)]
+        by_group, told = sensitivities_of_groups(state, names, self._changes)
+        figures = {
+            f"{group}{SENSITIVITY}{name}": Figure(found.relative, "1")
+            for group, own in by_group.items()
+            for name, found in own.items()
+        }
         return figures, told
 
     def _split(self, point: Point) -> tuple[dict[str, float], Point]:

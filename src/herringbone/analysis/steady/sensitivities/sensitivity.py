@@ -75,6 +75,24 @@ def sensitivities(
         }
 
 
+def sensitivities_of_groups(
+    state: SteadyState, parameters: Sequence[str], changes: Changes
+) -> tuple[dict[str, dict[str, Sensitivity]], list[str]]:
+    """Sensitivities of all groups of channels, and lines on what has none.
+
+    Args:
+        state, parameters: see `sensitivities`; those that cannot be changed alone are left out.
+        changes: of one caller, who asks at several operating points.
+    """
+    names, others = changes.alone(state.structure, parameters)
+    told = [others] if others else []
+    try:
+        groups = state.channels if names else ()
+        return {group: sensitivities(state, group, names, changes) for group in groups}, told
+    except ParameterError as error:
+        return {}, [*told, str(error)]
+
+
 class _Adjoint(NamedTuple):
     """Of a level.
 
