@@ -23,6 +23,7 @@ from herringbone.commands.options import (
 )
 from herringbone.commands.output import check_writable, say, show
 from herringbone.core import ParameterError
+from herringbone.result.folder.names import remove_study_pictures
 
 if TYPE_CHECKING:
     from herringbone.running.prepared import Wishes
@@ -132,14 +133,11 @@ def run(options: argparse.Namespace) -> int:
             told=lambda ahead: tqdm.write(ahead, file=sys.stderr),
             progress=bar.update,
         )
-    from herringbone.plotting.studies.pictures import (  # noqa: PLC0415 (matplotlib)
-        remove_others,
-        write_study_pictures,
-    )
+    from herringbone.plotting.studies.pictures import write_study_pictures  # noqa: PLC0415
 
     title = ": ".join(filter(None, (Path(options.system).stem, found.of)))
     drawn = write_study_pictures(found.table, found.units, folder, title, spread)
-    remove_others(folder, drawn.files)
+    remove_study_pictures(folder, but=drawn.files)
     for line in drawn.missing:
         say(line)
     files_told = [str(folder / file.name) for file in (*found.files, *drawn.files)]

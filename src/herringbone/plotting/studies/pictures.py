@@ -26,7 +26,6 @@ from herringbone.plotting.studies.sensitivities import PARAMETER, band, tornado
 from herringbone.plotting.studies.steady_state import steady_picture
 from herringbone.plotting.studies.table import Points
 from herringbone.plotting.studies.waterfall import waterfall
-from herringbone.result.folder.names import STUDY_PICTURES
 
 SPREAD = 1.0
 """Of parameters that nobody has measured, if nothing else is said: a factor of 2."""
@@ -87,13 +86,6 @@ def write_study_pictures(
             continue
         files.append(_written(figure, file))
     return StudyPictures(files, missing)
-
-
-def remove_others(folder: Path, files: Sequence[Path]) -> None:
-    """Remove pictures of an earlier study in its folder, which the present one does not have."""
-    for pattern in STUDY_PICTURES:
-        for file in set(folder.glob(pattern)) - set(files):
-            file.unlink()
 
 
 def write_steady_pictures(

@@ -1,5 +1,6 @@
 """What a results folder holds; see `docs/results_folder.md`."""
 
+from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
 
@@ -61,6 +62,11 @@ def remove_study(folder: Path) -> None:
     """
     for name in (STUDY, STUDY_TABLE, STUDY_PARQUET, UNITS):
         (folder / name).unlink(missing_ok=True)
+    remove_study_pictures(folder)
+
+
+def remove_study_pictures(folder: Path, but: Sequence[Path] = ()) -> None:
+    """Remove a study's pictures but some; raises OSError."""
     for pattern in STUDY_PICTURES:
-        for file in folder.glob(pattern):
+        for file in set(folder.glob(pattern)) - set(but):
             file.unlink(missing_ok=True)
