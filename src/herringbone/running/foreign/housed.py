@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from herringbone.cosim.cell.policy import Remark, foreign_fmu_policy
+from herringbone.cosim.cell.policy import Remark, foreign_fmus_housed
 
 
 @contextmanager
@@ -33,10 +33,6 @@ def foreign_fmus(
     Raises:
         ParameterError: the deadline is not positive, or a trial has no step.
     """
-    with foreign_fmu_policy(
-        in_process=in_process,
-        deadline=call_deadline,
-        longest_trial=longest_trial,
-        most_trial_steps=most_trial_steps,
-    ) as policy:
-        yield policy.remarks
+    asked = in_process, call_deadline, longest_trial, most_trial_steps
+    with foreign_fmus_housed(*asked) as remarks:
+        yield remarks
