@@ -10,12 +10,12 @@ Source: Universal File Formats for Modal Analysis Testing, University of Cincinn
 import contextlib
 import io
 import re
-import tempfile
 from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from herringbone.core.errors import HerringboneError, ResourceError
+from herringbone.core.places.temporary import temporary_folder
 from herringbone.core.reading.numbers import whole
 from herringbone.core.reading.texts import LARGEST_MODEL, read_bytes
 
@@ -58,9 +58,9 @@ def universal_sets(path: Path, kinds: Collection[int]) -> list[dict[str, Any]]:
     except ResourceError as error:
         raise ResourceError(f"{path}: {error}") from None
     found = []
-    with tempfile.TemporaryDirectory() as scratch:
+    with temporary_folder() as scratch:
         for block in blocks:
-            alone = Path(scratch) / "set.unv"
+            alone = scratch / "set.unv"
             alone.write_bytes(b"    -1" + block.body + b"    -1\n")
             try:
                 with contextlib.redirect_stdout(io.StringIO()):  # it prints what it does not know

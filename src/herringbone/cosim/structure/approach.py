@@ -157,7 +157,7 @@ class Approach:
         if not self.even:
             yield from ((t, h, self.held(t, h)) for t, h in self.steps())
             return
-        begins = (np.arange(self._count) - self._count) * self.step
+        begins = np.array([t for t, _ in self.steps()])
         for first in range(0, begins.size, _AT_ONCE):
             some = begins[first : first + _AT_ONCE]
             rows = self.held(some[:, None], self.step)

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.core import HerringboneError, OutcomeKind, ResourceError
+from herringbone.core.places.files import is_file
 from herringbone.core.wording import option
 from herringbone.result.folder.checked_store import CheckedStore
 from herringbone.result.folder.load import load
-from herringbone.result.folder.names import State
+from herringbone.result.folder.names import RUN, State
 from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.state_file import read_state
 from herringbone.result.folder.stored_table import stored_table
@@ -67,7 +68,7 @@ def to_resume(folder: Path) -> Resumed | Result:
         HerringboneError: the folder holds no run that can be resumed, or another process writes
             into it.
     """
-    if read_run_file(folder) is None:
+    if not is_file(folder / RUN):
         raise _nothing(folder)
     lock = FolderLock(folder)  # a run whose rows are complete may still be going on
     try:
