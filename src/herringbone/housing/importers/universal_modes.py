@@ -106,12 +106,18 @@ def _damping(viscous: float, hysteretic: float) -> float:
     return viscous or 0.5 * hysteretic or math.nan
 
 
+def _check_size(shape: np.ndarray, labels: np.ndarray, where: str) -> None:
+    if shape.shape != (labels.size, 3):
+        raise ResourceError(
+            f"{where}: {labels.size} nodes have {shape.size} values, not three translations each"
+        )
+
+
 def _mode_55(item: Mapping[str, Any]) -> Mode:
     where = f"mode {item['mode_n']}"
     labels = np.asarray(item["node_nums"]).astype(int)
     shape = np.column_stack([item["r1"], item["r2"], item["r3"]])
-    if shape.shape[0] != labels.size:
-        raise ResourceError(f"{where}: {labels.size} nodes, {shape.shape[0]} values")
+    _check_size(shape, labels, where)
     factor = 1.0 + 0.0j
     if np.iscomplexobj(shape):
         shape, factor = real_shape(shape, where)
@@ -132,8 +138,9 @@ def _mode_2414(item: Mapping[str, Any]) -> Mode:
     where = f"mode {number}"
     if item["dataset_location"] != 1 or item["data_type"] not in {2, 4}:
         raise ResourceError(f"{where}: data set 2414 must hold real data at nodes")
+    labels = np.asarray(item["node_nums"]).astype(int)
     shape = np.array([values[:3] for values in item["data_at_node"]])
+    _check_size(shape, labels, where)
     mass = check_modal_mass(item["record12_field4"], where)
     zeta = _damping(item["record12_field5"], item["record12_field6"])
-    labels = np.asarray(item["node_nums"]).astype(int)
     return Mode(number, item["record12_field2"], zeta, labels, shape / math.sqrt(mass))

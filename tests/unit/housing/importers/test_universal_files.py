@@ -169,6 +169,15 @@ def test_uff_2414_to_its_digits(pyuff, write_uff, seats, model):
     np.testing.assert_array_equal(found.damping_ratio, 0.04)
 
 
+def test_modes_with_two_values_a_node_are_refused(pyuff, write_uff, seats, model):
+    frequency, shapes = modes_of(model)
+    path = write_uff()
+    with path.open("a") as file:
+        file.write("\n".join(text_2414(frequency, shapes[:, :2])) + "\n")
+    message = refusal(lambda: read_uff(path, read_seats(seats)))
+    assert f"mode 1: {NODES} nodes have {2 * NODES} values, not three translations each" in message
+
+
 def test_bad_uff(pyuff, write_uff, seats, model):
     frequency, shapes = modes_of(model)
     given = read_seats(seats)
