@@ -20,7 +20,7 @@ from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.foreign.interfaces import unfed
 from herringbone.running.foreign.linear_start import turned_back, under_load
 from herringbone.running.foreign.speeding_up import speeding_up
-from herringbone.running.foreign.started import proposed_step
+from herringbone.running.foreign.started import inner_step, proposed_step
 from herringbone.running.foreign.surrogates import surrogates_of
 from herringbone.running.loading import instances
 from herringbone.running.remembered_answers import bond_of, stability_warning
@@ -137,14 +137,22 @@ def way_of(
 
 
 def _other_lengths(system: System, parts: Sequence[Part], step: float) -> Iterator[str]:
-    """A line for each foreign part that takes steps of one length only and proposes another one."""
+    """A line for each foreign part whose declared steps do not fit that of the run."""
     for part in parts:
         fmu = next((p.fmu for p in system.parts if p.name == part.name and p.foreign), None)
-        proposed = proposed_step(fmu) if fmu and part.one_step else None
-        if proposed and not math.isclose(proposed, step):
+        if not fmu:
+            continue
+        proposed, inner = proposed_step(fmu), inner_step(fmu)
+        if part.one_step and proposed and not math.isclose(proposed, step):
             yield (
                 f"{part.name} takes steps of one length only, and proposes {proposed:g} s: if it "
                 f"refuses {step:g} s, use {option('step', proposed)}"
+            )
+        elif inner and not math.isclose(step, inner * round(step / inner)):
+            fitting = inner * max(round(step / inner), 1)
+            yield (
+                f"{part.name} takes inner steps of {inner:g} s, of which {step:g} s is no whole "
+                f"number: its outputs may be those of another time; {option('step', fitting)} fits"
             )
 
 

@@ -112,7 +112,8 @@ def _check_numbers(model: ModelDescription) -> None:
             number(str(value or 0))
     experiment = model.defaultExperiment
     times = (experiment.startTime, experiment.stopTime, experiment.stepSize) if experiment else ()
-    for text in times:
+    inner = model.coSimulation.fixedInternalStepSize if model.coSimulation else None
+    for text in (*times, inner):
         number(str(text or 0))
 
 

@@ -58,9 +58,16 @@ def own_step(fmu: Path) -> float:
 
 
 def proposed_step(fmu: Path) -> float | None:
-    """Step that an FMU proposes for experiments [s]; None if it proposes none."""
+    """Step that an FMU proposes for experiments, else its `inner_step` [s]; None: neither."""
     experiment = read_fmu(fmu).defaultExperiment
-    return float(experiment.stepSize) if experiment and experiment.stepSize else None
+    proposed = experiment.stepSize if experiment else None
+    return float(proposed) if proposed else inner_step(fmu)
+
+
+def inner_step(fmu: Path) -> float | None:
+    """`fixedInternalStepSize` of FMI 3.0, of which communication steps are multiples [s]."""
+    declared = read_fmu(fmu).coSimulation.fixedInternalStepSize
+    return float(declared) if declared else None
 
 
 def takes_one_step(fmu: Path) -> bool:

@@ -48,6 +48,25 @@ def test_usual_steps_are_tried_where_parts_take_one_length_only(tmp_path, option
         assert result.verification is None
 
 
+INNER = 'fixedInternalStepSize="1.25e-4"'
+
+
+@pytest.mark.parametrize("steps", ["1.25e-4 1.25e-4", ""])
+def test_declared_inner_steps_are_kept_to(tmp_path, steps):
+    """Of FMI 3.0: no usual step is this one, which parts of one step length are tried with."""
+    system = drivetrain(tmp_path, 3, INNER, steps=steps)
+    options = {} if steps else {"step": 2.9e-4, "algorithm": "jacobi"}
+    result = searched(system, **options)
+    told = [note for note in result.info.notes if "takes inner steps of" in note]
+    if steps:
+        assert result.outcome.completed and not told
+        assert result.info.communication_step == pytest.approx(1.25e-4, rel=1e-6)
+        assert speed_error(result) < (2 * np.pi * 82 * 1.25e-4) ** 2
+    else:
+        assert [note.split()[0] for note in told] == ["motor", "load"]
+        assert all("no whole number" in note and "step=0.00025 fits" in note for note in told)
+
+
 def test_what_fails_with_every_step_ends_as_such(tmp_path):
     """No step is taken, and the message holds the part."""
     result = searched(drivetrain(tmp_path, 2, steps="1e-30 0.0"), tolerance=1e-3)
