@@ -132,10 +132,10 @@ def _settled(system: System, step: float, wanted: Wanted) -> tuple[System, tuple
             f"{'' if found.declared else _unset(system, fastest)}"
         )
     if found.moved:
+        what = f"given: {found.given:.6g} rad/s" if found.given else "nothing sets it"
         lines.append(
             f"{fastest} starts at {found.values[fastest]:.6g} rad/s, where torques balance "
-            f"(given: {found.given:.6g} rad/s); {option('start', Start.REST.value)} takes what is "
-            "given"
+            f"({what}); {option('start', Start.REST.value)} takes what is given"
         )
     elif found.declared:
         lines.append(

@@ -60,13 +60,15 @@ class Search:
 
     Attributes:
         began: foreign parts settle at the speed that was set, with which every search begins.
+        fastest: path of the speed of the fastest shaft, "" where there is none.
+        given: speed that was set or declared [rad/s].
     """
 
     def __init__(self, known: System, network: Network, strangers: list[Stranger]) -> None:
         self._system, self._strangers = known, strangers
         self._links = Links(network, strangers)
         self._answering = Answering(self._links, strangers)
-        self._declared, self._given = "", 0.0
+        self._declared, self.fastest, self.given = "", "", 0.0
         self.began = False
 
     def found(self) -> SettledStart:
@@ -101,7 +103,7 @@ class Search:
         links = self._links
         slopes, no_acceleration = links.slopes(), np.zeros(len(links.has_states))
         still, answer = self._began(slopes)
-        if not (begin := self._given):
+        if not (begin := self.given):
             return None
         unknown = np.append(answer - slopes @ links.own_values(still), begin)
         search = Anderson(np.append(links.sizes(answer), _FASTER * abs(begin)))
@@ -116,12 +118,13 @@ class Search:
             constant = answer - slopes @ links.own_values(motion)
             first = first or motion.acceleration
             off = np.abs(constant - unknown[:-1])
-            balanced = abs(motion.acceleration) <= _SAME * abs(first)
+            balanced = abs(motion.acceleration) <= max(_SAME * abs(first), _EVEN)
             if balanced and np.all(off <= _SAME * links.sizes(answer)):
-                if (speed - begin) * first < 0.0:
+                if abs(first) > _EVEN and (speed - begin) * first < 0.0:
                     return None
                 return self._start(motion.at_acceleration(0.0), moved=True)
-            faster = speed + _FASTER * abs(begin) * motion.acceleration / (abs(first) or 1.0)
+            scale = max(abs(first), PROBE)
+            faster = speed + _FASTER * abs(begin) * motion.acceleration / scale
             unknown = search.next(unknown, np.append(constant, faster))
         return None
 
@@ -132,7 +135,8 @@ class Search:
         motion = self._balanced(constant, slopes, nothing)
         if self._take_declared_speed(motion):
             motion = self._balanced(constant, slopes, nothing)
-        self._given = value_at(self._system, motion.fastest) if motion.fastest else 0.0
+        self.fastest = motion.fastest
+        self.given = value_at(self._system, motion.fastest) if motion.fastest else 0.0
         for part in self._strangers:
             part.compare_with(motion.loads)
         still = self._answering.gentlest(self._answering.at_acceleration(motion, 0.0))
@@ -161,7 +165,7 @@ class Search:
             motion.fastest,
             moved,
             self._declared,
-            self._given,
+            self.given,
             {
                 f"{name}.{output}": swing
                 for name, (output, swing) in self._answering.pulsations.items()

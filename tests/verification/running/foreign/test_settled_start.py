@@ -91,6 +91,45 @@ def driven(tmp_path_factory):
     return system
 
 
+GOVERNED = """
+engine = { component = "torque_source", set = { nominal_torque = 300.0, nominal_speed = 120.0, \
+constant_share = 26.0, linear_share = -25.0 } }
+flywheel = { component = "rotating_inertia", set = { inertia = 2.0 } }
+elastic = { component = "shaft_coupling", set = { stiffness = 5e3, damping = 15.0 } }
+gearbox = { system = "gearbox" }
+shaft = { component = "shaft_coupling", set = { stiffness = 1e5, damping = 50.0 } }
+propeller = { component = "rotating_inertia", set = { inertia = 4.0 } }
+water = { component = "torque_source", set = { nominal_torque = -900.0, nominal_speed = 40.0, \
+quadratic_share = 1.0 } }
+"""
+TURNING = [
+    ["flywheel.flange_a", "engine.flange"],
+    ["flywheel.flange_b", "elastic.flange_a"],
+    ["gearbox.pinion", "elastic.flange_b"],
+    ["gearbox.wheel", "shaft.flange_a"],
+    ["propeller.flange_a", "shaft.flange_b"],
+    ["propeller.flange_b", "water.flange"],
+]
+
+
+@pytest.mark.parametrize("values", [{}, {"flywheel.speed": 60.0}])
+def test_a_housing_leaves_the_speed_at_which_torques_balance(tmp_path, housing, values):
+    """At 120 and 40 rad/s, teeth being 27 and 81, both give what they nominally do.
+
+    Where nothing sets the speed, 0 of it counted as set, at which the engine gives 26 times that.
+    """
+    found = write_system(tmp_path, "governed", TURNING, {})
+    with (found / "system.toml").open("a", encoding="utf-8") as file:
+        file.write(GOVERNED.replace("\\\n", ""))
+    run = hb.run(
+        found, replace_parts={"modal_housing": housing}, values=values, t_end=0.002, step=STEP
+    )
+    assert run["flywheel.flange_a.w"].iloc[0] == pytest.approx(120.0, rel=1e-3)
+    assert run["engine.flange.tau"].iloc[0] == pytest.approx(300.0, rel=1e-2)
+    told = f"given: {values['flywheel.speed']:g} rad/s" if values else "nothing sets it"
+    assert any("where torques balance" in note and told in note for note in run.info.notes)
+
+
 def test_what_does_not_balance_speeds_up(driven):
     """Newton's law of the whole drivetrain, and the torque that is left at the motor's flange."""
     values = {"motor.torque_set": TORQUE, "gear_mesh.der(angle)": SPEED}
