@@ -252,6 +252,47 @@ def test_a_flag_below_the_limit_under_load_is_no_false_alarm():
     assert force[150e-6] - force[step / 5.0] < VISIBLE * alternating
 
 
+MACHINES = """
+name = "machines"
+connections = [
+  ["motor.flange", "left.flange_a"], ["left.flange_b", "coupling.flange_a"],
+  ["right.flange_a", "coupling.flange_b"], ["right.flange_b", "brake.flange"],
+]
+[parts.left]
+component = "rotating_inertia"
+set = { inertia = 0.1, speed = 100.0 }
+[parts.right]
+component = "rotating_inertia"
+set = { inertia = 0.1, speed = 100.0 }
+[parts.coupling]
+component = "shaft_coupling"
+set = { stiffness = 4.5e5, damping = 6.0 }
+[parts.motor]
+component = "torque_source"
+set = { nominal_torque = 500.0, nominal_speed = 100.0, constant_share = 3.0, linear_share = -2.0, \
+  ramp_time = 0.0, "order_1.order" = 0.5, "order_1.amplitude" = AMPLITUDE, "order_1.phase" = 1.0 }
+[parts.brake]
+component = "torque_source"
+set = { nominal_torque = -500.0, nominal_speed = 100.0, constant_share = -1.0, linear_share = 2.0 }
+"""
+
+
+@pytest.mark.parametrize("amplitude", [0.0, 0.02])
+def test_slopes_of_machines_hide_nothing(tmp_path, amplitude):
+    """What they take at their mean speed, 100 kW each, damps no vibration.
+
+    Each slope of 10 N m s, at half of the twist's velocity, adds a quarter of it to the coupling's
+    damper: c = 6 + 5 N m s. Held torques add k h / (2 c) of what is taken, as of two masses; of the
+    3000 rad/s a step of 6e-5 s makes 1.2 times that, which grows.
+    """
+    text = MACHINES.replace("\\\n", "").replace("AMPLITUDE", str(amplitude))
+    (tmp_path / "system.toml").write_text(text)
+    system = read_system(tmp_path)
+    found = run(system, Jacobi(0), 1e-5, 0.05, 3000.0)
+    assert found.energy.ratio == pytest.approx(4.5e5 * 1e-5 / 22.0, rel=0.02)
+    assert run(system, Jacobi(0), 6e-5, 0.2, 3000.0).energy.verdict is Verdict.UNSTABLE
+
+
 def test_nothing_is_said_without_dampers():
     assert TwoMass(w=1.0, zeta=0.0).run(Jacobi(2), 0.02, 1.0).energy is None
 

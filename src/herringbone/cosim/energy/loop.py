@@ -5,13 +5,17 @@ step makes. For each pair of force and velocity at a body's port, the coupling a
 
     dE = integral of (f - F) (v - w) dt.
 
-w is the mean, over a window, of the motion of an element's ports together that causes no force: a
-force that errs steadily changes the speed of a shaft, but feeds no vibration. F has an elastic
-part, F + C v, and a damping part, -C v, with the matrix C of the element's dampers (C w = 0). The
+w is the mean, over a window, of the motion of an element's ports together that turns no spring: a
+force that errs steadily changes the speed of a shaft, but feeds no vibration. So v stands for v - w
+from here on, and F has an elastic part, F + C v, and a damping part, -C v, with the matrix C of the
+element's dampers: what a machine gives or takes at its mean speed belongs to the former. The
 elastic part is linear in the positions, so that over all pairs of an element its work is known from
 both ends of the step, whatever the motion inside:
 
     dE = integral of f ds - (E0 + E1) / 2 (s1 - s0) + integral of v C v dt,   E = F + C v.
+
+That of a force that depends on no position changes by itself, as an engine's by the angle that its
+shaft has turned: E = E0 + (E1 - E0) c.
 
 f is the polynomial that the algorithm let the body take. The motion inside the step is the
 polynomial through positions and velocities, at both ends for the algorithms with one pass:
@@ -140,6 +144,15 @@ def finish_pair(
 
 
 @inlined
+def _elastic_work(monitor: EnergyMonitor, i: int, end: float, d: float, first: float) -> float:
+    """Integral of E ds, of E at the end, of ds and of c ds [J]."""
+    start = monitor.state[ELASTIC, i]
+    if monitor.springless[i]:
+        return start * d + (end - start) * first
+    return 0.5 * (start + end) * d
+
+
+@inlined
 def _shift_forces(monitor: EnergyMonitor) -> None:
     """What the slips of the elements' motions took from the forces."""
     slip = monitor.slip
@@ -178,8 +191,9 @@ def book_step(monitor: EnergyMonitor, history: np.ndarray, h: float) -> None:
             _end_becomes_start(monitor, i, elastic)
             continue
         heat = h / 3.0 * (drag0 * v0 + drag1 * v1 + 0.5 * (drag0 * v1 + drag1 * v0))
-        work = (taken[0, i] - 0.5 * (state[ELASTIC, i] + elastic)) * d
-        work += taken[1, i] * (0.5 * d - h * (v0 - v1) / 12.0)
+        first = 0.5 * d - h * (v0 - v1) / 12.0
+        work = taken[0, i] * d + taken[1, i] * first
+        work -= _elastic_work(monitor, i, elastic, d, first)
         work += taken[2, i] * (0.3 * d + h * (0.1 * v1 - v0 / 15.0))
         finish_pair(monitor, i, elastic, work, heat, h)
     if sample:

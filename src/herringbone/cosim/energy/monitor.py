@@ -26,7 +26,7 @@ _EXTRA_POINTS = 2
 """Points of quadrature in a macro step beyond the degree p of its signals: exact for the power of a
 force of degree p at a velocity of degree 2 p."""
 _RIGID = 1e-9
-"""Force on a motion, relative to the largest, that counts as none."""
+"""Force on a motion, relative to the largest of an element, that counts as none."""
 
 
 class Rule(NamedTuple):
@@ -36,6 +36,7 @@ class Rule(NamedTuple):
         weight: (points,) of a Gauss rule on [0, 1].
         force: (points, p + 1): values at the points by values at the nodes.
         mean: (p + 1,): mean by values at the nodes.
+        place: (points,) on [0, 1].
         motion: (points, 2 p + 2): velocity times step at the points, by positions and by
             velocities times step at the nodes.
         position: (p + 1, p + 1): positions at the nodes by velocities times step there, for
@@ -45,6 +46,7 @@ class Rule(NamedTuple):
     weight: np.ndarray
     force: np.ndarray
     mean: np.ndarray
+    place: np.ndarray
     motion: np.ndarray
     position: np.ndarray
 
@@ -58,7 +60,8 @@ def integration_rule(degree: int) -> Rule:
     force = np.vander(points, degree + 1, increasing=True) @ to_powers
     once = nodes[:, None] ** np.arange(1, degree + 2) / np.arange(1, degree + 2)
     hermite = np.linalg.inv(np.vstack([nodes[:, None] ** powers, _slope(nodes, powers)]))
-    return Rule(weight, force, weight @ force, _slope(points, powers) @ hermite, once @ to_powers)
+    motion = _slope(points, powers) @ hermite
+    return Rule(weight, force, weight @ force, points, motion, once @ to_powers)
 
 
 def _slope(at: np.ndarray, powers: np.ndarray) -> np.ndarray:
@@ -101,7 +104,8 @@ class EnergyMonitor(NamedTuple):
         late: 1 if elements may not see the motion that a step ends with.
         row, column: pairs of an element that act on each other.
         stiffness, damping: -d force / d position and velocity for these [N/m, N.s/m, ...].
-        rigid: projector of velocities onto those that cause no force, (pairs, pairs).
+        rigid: projector of velocities onto those that turn no spring, (pairs, pairs).
+    springless: 1 for forces that depend on no position, (pairs,).
         rule: integration over a step, of an iterated algorithm.
         slice: length of a slice of time [s].
         slices: ring of energies in slices of time, (slices, pairs + 3): added by each pair [J];
@@ -127,6 +131,7 @@ class EnergyMonitor(NamedTuple):
     stiffness: np.ndarray
     damping: np.ndarray
     rigid: np.ndarray
+    springless: np.ndarray
     rule: Rule
     slice: float
     slices: np.ndarray
@@ -173,7 +178,8 @@ def energy_monitor(
         column=column.astype(np.int64),
         stiffness=stiffness[row, column],
         damping=damping[row, column],
-        rigid=rigid_motion(stiffness, damping),
+        rigid=rigid_motion(stiffness, places.element),
+        springless=np.all(stiffness == 0.0, axis=1).astype(np.int64),
         rule=rule,
         slice=window / SLICES_IN_WINDOW,
         slices=np.zeros((SLICES_IN_WINDOW, count + 3)),
@@ -191,10 +197,17 @@ def energy_monitor(
     )
 
 
-def rigid_motion(stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
-    """Projector onto the velocities that cause no force, (n, n), from -d force / d motion."""
-    scaled = [m / (np.abs(m).max(initial=0.0) or 1.0) for m in (stiffness, damping)]
-    _, sizes, directions = np.linalg.svd(np.vstack(scaled))
+def rigid_motion(stiffness: np.ndarray, element: np.ndarray) -> np.ndarray:
+    """Projector onto the velocities that change no force as they go on, (n, n).
+
+    Args:
+        stiffness: -d force / d position, (n, n).
+        element: (n,), part of each; springs of different parts may be of very different sizes.
+    """
+    scaled = stiffness.copy()
+    for part in np.unique(element):
+        scaled[element == part] /= np.abs(stiffness[element == part]).max() or 1.0
+    _, sizes, directions = np.linalg.svd(scaled)
     free = directions[np.count_nonzero(sizes > _RIGID) :]
     return free.T @ free
 

@@ -51,17 +51,20 @@ def _taken_force(
 
 @inlined
 def _work(
-    monitor: EnergyMonitor, nodes: np.ndarray, trial: np.ndarray, i: int, less: float, h: float
+    monitor: EnergyMonitor, nodes: np.ndarray, trial: np.ndarray, i: int, elastic: float, h: float
 ) -> float:
-    """Work of the force that pair i's body took, less a constant force [J]."""
-    rule, values = monitor.rule, monitor.points
+    """Work of the force that pair i's body took, less that of the elastic force [J]."""
+    rule, values, start = monitor.rule, monitor.points, monitor.state[ELASTIC, i]
     mean, work = _taken_force(monitor, nodes, trial, i, values), 0.0
+    less = 0.5 * (start + elastic)
     for q in range(rule.weight.size):
         force = mean
         if not monitor.places.held[i]:
             force = 0.0
             for k in range(nodes.shape[0]):
                 force += rule.force[q, k] * values[k]
+        if monitor.springless[i]:
+            less = start + (elastic - start) * rule.place[q]
         work += rule.weight[q] * (force - less) * monitor.speed[i, q]
     return h * work
 
@@ -96,6 +99,6 @@ def watch_nodes(monitor: EnergyMonitor, nodes: np.ndarray, trial: np.ndarray, h:
     _write_heat(monitor, h)
     for i in range(monitor.places.force.size):
         elastic = end[monitor.places.force[i]] + state[DRAG_AT_END, i]
-        work = _work(monitor, nodes, trial, i, 0.5 * (state[ELASTIC, i] + elastic), h)
+        work = _work(monitor, nodes, trial, i, elastic, h)
         finish_pair(monitor, i, elastic, work, monitor.taken[0, i], h)
     end_step(monitor, h)

@@ -1,18 +1,14 @@
 """The energy monitor of a run: what it watches, and what it found.
 
-It knows no component. A force that an element sends to a body, and the velocity that the same body
-sends to the same port of the element, make a pair whose product is a power. What the elements'
-dampers take follows from the forces' dependence on the velocities, and the forces at a motion that
-an element has not seen from that on the positions too; both are measured in initialisation mode,
-where outputs follow inputs. The equations stand in `energy.loop`.
+It knows no component, but pairs of force and velocity (`energy.pairs`). The equations stand in
+`energy.loop`.
 
 Every algorithm is watched. Left out are the forces on slow bodies, which are fitted afterwards, and
 elements that are bodies as well.
 """
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -27,81 +23,15 @@ from herringbone.cosim.energy.monitor import (
     PairPlaces,
     energy_monitor,
 )
+from herringbone.cosim.energy.pairs import damping_of, power_pairs, stiffness_of
 from herringbone.cosim.layouts.layout import connected_outputs
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
-from herringbone.cosim.structure.rates import motion_of_force
 
 PERIODS = 5.0
 """Length of the window, in periods of the fastest bond."""
 UNKNOWN_WINDOW = 100
 """Length of the window [macro steps] where the bonds are not known."""
-_VELOCITY_CHANGE = 1e-3
-"""Difference of a velocity [m/s or rad/s]."""
-_POSITION_CHANGE = 1e-8
-"""Difference of a position [m or rad]."""
-_NOTHING = 1e-9
-
-
-@dataclass(frozen=True)
-class PowerPair:
-    """A force on a body and the body's motion there.
-
-    Attributes:
-        force: connection from the element to the body.
-        velocity: connection from the body to the element.
-        position: likewise; None if the element takes no position.
-    """
-
-    force: Connection
-    velocity: Connection
-    position: Connection | None
-
-
-def power_pairs(network: Network) -> tuple[PowerPair, ...]:
-    """All pairs of force and velocity between elements and bodies, by their names."""
-    bodies = {*network.bodies, *network.slow}
-    by_input = {(c.target, c.input): c for c in network.connections}
-    found = []
-    for c in network.connections:
-        motion = motion_of_force(c.output)
-        if motion is None or c.source not in network.elements or c.target not in bodies:
-            continue
-        position, velocity = (by_input.get((c.source, name)) for name in motion)
-        if velocity is None or velocity.source != c.target:
-            continue
-        same = position is not None and position.source == c.target
-        found.append(PowerPair(c, velocity, position if same else None))
-    return tuple(found)
-
-
-def pair_sensitivity(
-    network: Network, pairs: Sequence[PowerPair], moved: Sequence[Connection | None], change: float
-) -> np.ndarray:
-    """-d force / d motion, (pairs, pairs), by differences; in initialisation mode only.
-
-    Args:
-        network: parts and connections.
-        pairs: whose forces are looked at.
-        moved: a motion of each pair that an element takes; None for none.
-        change: of the motion.
-    """
-    found = np.zeros((len(pairs), len(pairs)))
-    for j, c in enumerate(moved):
-        if c is None:
-            continue
-        element = network.parts[c.target]
-        rows = [i for i, pair in enumerate(pairs) if pair.force.source == c.target]
-        forces = [pairs[i].force.output for i in rows]
-        start = element.get([c.input])[0]
-        values = []
-        for moved_by in (change, -change):
-            element.set(c.input, start + moved_by)
-            values.append(np.array(element.get(forces)))
-        element.set(c.input, start)
-        slope = -(values[0] - values[1]) / (2.0 * change)
-        found[rows, j] = np.where(np.abs(slope) > _NOTHING * np.abs(slope).max(), slope, 0.0)
-    return found
 
 
 class EnergyWatch:
@@ -126,16 +56,15 @@ class EnergyWatch:
     def start(self) -> None:
         """Measure dampers and springs, in initialisation mode; without dampers, watch nothing."""
         network, pairs, nodes = self._network, self._pairs, self._prepared.nodes
-        damping = pair_sensitivity(network, pairs, [p.velocity for p in pairs], _VELOCITY_CHANGE)
+        damping = damping_of(network, pairs)
         if not (np.diag(damping) > 0.0).any():
             self._pairs = ()
             return
         late = nodes is None and (self._prepared.predicts or self._elements_late())
-        stiffness = pair_sensitivity(network, pairs, [p.position for p in pairs], _POSITION_CHANGE)
         self.monitor = energy_monitor(
             self._places(),
             late,
-            stiffness,
+            stiffness_of(network, pairs),
             damping,
             self._window * self._step,
             self._step,

@@ -11,6 +11,8 @@ import numpy as np
 
 from herringbone.cosim.energy.monitor import (
     COMMON,
+    DRAG,
+    ELASTIC,
     INACCURATE_AT,
     INACCURATE_FOR,
     LEAST,
@@ -42,7 +44,10 @@ _ROUNDING = 1e-6
 
 @inlined
 def update_common(monitor: EnergyMonitor, steps: int) -> None:
-    """Mean common velocity of the pairs of an element, from its sum over so many steps."""
+    """Mean common velocity of the pairs of an element, from its sum over so many steps.
+
+    What dampers take at that velocity goes from the elastic force of the step that begins.
+    """
     state, rigid = monitor.state, monitor.rigid
     for i in range(monitor.places.force.size):
         before = state[COMMON, i]
@@ -50,7 +55,12 @@ def update_common(monitor: EnergyMonitor, steps: int) -> None:
         for j in range(monitor.places.force.size):
             state[COMMON, i] += rigid[i, j] * state[TOTAL, j] / steps
         state[SPEED, i] += before - state[COMMON, i]
+        state[ELASTIC, i] -= state[DRAG, i]
+        state[DRAG, i] = 0.0
+    for k in range(monitor.row.size):
+        state[DRAG, monitor.row[k]] += monitor.damping[k] * state[SPEED, monitor.column[k]]
     for i in range(monitor.places.force.size):
+        state[ELASTIC, i] += state[DRAG, i]
         state[TOTAL, i] = 0.0
 
 

@@ -22,7 +22,7 @@ from herringbone.components.in_process import InProcessPart
 from herringbone.core import HerringboneError, Instance
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import Algorithm
-from herringbone.cosim.energy.watch import power_pairs
+from herringbone.cosim.energy.pairs import power_pairs
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
