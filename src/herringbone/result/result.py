@@ -52,6 +52,8 @@ class Result(Facts):
         budget: how far the run may be from the gearbox that is meant, by source of error.
         whole: of a long run, of which `data` has only the last records: smallest and largest
             values of pieces of all of it, by turns; columns of reals.
+        before: of such a run, the records before those of `data`, read when they are used; columns
+            of reals.
     """
 
     data: pd.DataFrame
@@ -64,6 +66,7 @@ class Result(Facts):
     files: tuple[str, ...] = ()
     budget: tuple[BudgetRow, ...] = ()
     whole: pd.DataFrame | None = None
+    before: pd.DataFrame | None = None
 
     def noted(self, *notes: str) -> "Result":
         """The same result with further notes."""
@@ -73,6 +76,11 @@ class Result(Facts):
     def over_time(self) -> pd.DataFrame:
         """What shows the whole run: the table; of a long run `whole`."""
         return self.data if self.whole is None else self.whole
+
+    @property
+    def first_record(self) -> int:
+        """Number of the first record of `data` in the run."""
+        return 0 if self.before is None else len(self.before)
 
     def columns(self, *patterns: str) -> list[str]:
         """Columns that match any of the patterns (`*`, `?`), in the order of the table.

@@ -1,10 +1,12 @@
 """Motion of a housing's oscillators under the bearing forces that a run has recorded."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from herringbone.analysis.asked import resource_file
 from herringbone.core import ParameterError
@@ -13,12 +15,15 @@ from herringbone.core.declaring.anatomy import Anatomy
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.housing import SEAT_DOFS, ModalHousing, read_housing
 from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
-from herringbone.result.result import Result
+from herringbone.result.result import TIME, Result
+from herringbone.result.tables import PIECE
 
 _housings: Remembered[ModalHousing] = Remembered(8)
 _NEAR, _TERMS = 1.0, 20
 """Where the last of `_phi` is a series, and of how many terms: 1 / 23! is left."""
 _CUBIC = 3
+_FORGOTTEN = 20.0
+"""Time over which what is left of a start counts for nothing, in time constants."""
 
 
 def the_housing(result: Result, part: str = "") -> str:
@@ -122,37 +127,79 @@ def modal_velocity_amplitudes(
     return 1j * omega * (housing.seat_shapes.T @ forces) / inverse
 
 
-def modal_velocity(housing: ModalHousing, forces: np.ndarray, step: float) -> np.ndarray:
-    """Velocities (n, modes) [kg^1/2 m/s] of the oscillators, at rest under the first forces.
-
-    Forces are cubic splines between rows, and the motion under these is exact: with a the
-    eigenvalue in the upper half plane, z = q' - conj(a) q obeys z' = a z + F. Straight lines would
-    take 6 % of a force of which there are seven rows a period; splines take 0.1 %.
+def modal_velocity(
+    housing: ModalHousing, forces: np.ndarray, step: float, start: np.ndarray | None = None
+) -> np.ndarray:
+    """Velocities (n, modes) [kg^1/2 m/s] of the oscillators.
 
     Args:
         housing: of n oscillators, underdamped.
         forces: (n, 12) at the seats [N], of two rows at the least.
         step: between rows [s].
+        start: (modes,) at the first row, see `moving_start`; at rest under its forces if not given.
+    """
+    zeta = housing.damping_ratio
+    z = _oscillators(housing, forces, step, start)
+    return z.real - zeta / np.sqrt(1.0 - zeta**2) * z.imag
+
+
+def moving_start(result: Result, housing: ModalHousing, part: str = "") -> np.ndarray | None:
+    """Oscillators (modes,) at the first record of what a long run has left in memory.
+
+    They are at rest so long before that, or at the start of the run, that nothing is left of it.
+    None if the first record is that of the run.
+
+    Args:
+        result: of a run, with equidistant records.
+        housing: modal data.
+        part: see `seat_forces`, whose errors are raised.
+    """
+    before = result.before
+    if before is None or before.empty:
+        return None
+    rate = float(np.min(housing.damping_ratio * 2.0 * math.pi * housing.frequency_hz))
+    begin = float(result.data[TIME].iloc[0]) - (_FORGOTTEN / rate if rate > 0.0 else math.inf)
+    first = min(int(np.searchsorted(before[TIME].to_numpy(), begin)), len(before) - 1)
+    shared, z = [name for name in before if name in result.data], None
+    for row in range(first, len(before), PIECE):
+        rows = before.iloc[row : row + PIECE + 1][shared]
+        if row + PIECE >= len(before):
+            rows = pd.concat([rows, result.data[shared].iloc[:1]])
+        piece = replace(result, data=rows).uniform()
+        time = piece.data[TIME].to_numpy()
+        step = float(time[-1] - time[0]) / (time.size - 1)
+        z = _oscillators(housing, seat_forces(piece, part), step, z)[-1]
+    return z
+
+
+def _oscillators(
+    housing: ModalHousing, forces: np.ndarray, step: float, start: np.ndarray | None
+) -> np.ndarray:
+    """z (n, modes): of a the eigenvalue in the upper half plane, z = q' - conj(a) q.
+
+    Forces are cubic splines between rows, and the motion under these is exact: z obeys
+    z' = a z + F. Straight lines would take 6 % of a force of which there are seven rows a period;
+    splines take 0.1 %.
     """
     from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
 
     omega, zeta = 2.0 * math.pi * housing.frequency_hz, housing.damping_ratio
-    damped = np.sqrt(1.0 - zeta**2)
-    eigenvalues = omega * (-zeta + 1j * damped)
+    eigenvalues = omega * (-zeta + 1j * np.sqrt(1.0 - zeta**2))
     x = eigenvalues * step
     powers = CubicSpline(np.arange(len(forces)), forces).c[::-1]
     factors = map(math.factorial, range(_CUBIC + 1))
     answers = [
         f * step * phi * housing.seat_shapes for f, phi in zip(factors, _phi(x), strict=True)
     ]
-    rest = np.divide(
-        forces[0] @ housing.seat_shapes, omega**2, out=np.zeros_like(omega), where=omega > 0.0
-    )
+    if start is None:
+        loads = forces[0] @ housing.seat_shapes
+        rest = np.divide(loads, omega**2, out=np.zeros_like(omega), where=omega > 0.0)
+        start = -np.conj(eigenvalues) * rest
     z = np.empty((len(forces), len(omega)), dtype=complex)
-    z[0] = -np.conj(eigenvalues) * rest
+    z[0] = start
     np.matmul(np.hstack(powers), np.vstack(answers).view(float), out=z[1:].view(float))
     _decay(z, np.exp(x))
-    return z.real - zeta / damped * z.imag
+    return z
 
 
 def _decay(z: np.ndarray, decay: np.ndarray) -> None:

@@ -23,6 +23,7 @@ from herringbone.analysis.figures.modal_response import (
     housing_of,
     modal_velocity,
     modal_velocity_amplitudes,
+    moving_start,
     seat_forces,
 )
 from herringbone.analysis.figures.operating_point import SteadyPart, steady_part
@@ -153,14 +154,17 @@ def radiated_power(
     housing, forces, steady = power_inputs(result, housing, part=part)
     data = (housing.frequency_hz, housing.damping_ratio, housing.seat_shapes, housing.gram)
     return figure_of(
-        partial(_estimate, housing, forces, steady),
-        "radiated power", *data, housing.valid_to_hz, forces, steady,
+        partial(_estimate, result, housing, part, steady),
+        "radiated power", *data, housing.valid_to_hz, forces, result.first_record, steady,
     )  # fmt: skip
 
 
-def _estimate(housing: ModalHousing, forces: np.ndarray, steady: SteadyPart) -> RadiatedPower:
+def _estimate(
+    result: Result, housing: ModalHousing, part: str, steady: SteadyPart
+) -> RadiatedPower:
     gram = np.asarray(housing.gram)  # it is there: see above
-    velocity = modal_velocity(housing, forces, steady.sample_step)[steady.rows]
+    forces, start = seat_forces(result, part), moving_start(result, housing, part)
+    velocity = modal_velocity(housing, forces, steady.sample_step, start)[steady.rows]
     squares, directions = np.linalg.eigh(gram)
     surface = velocity @ (directions * np.sqrt(np.maximum(squares, 0.0)))
     spectrum = amplitude_spectrum(surface, steady.sample_step)

@@ -9,7 +9,7 @@ import pandas as pd
 from herringbone.result.folder.typed import as_json, from_json
 from herringbone.result.result import Result
 
-_ROWS = {"data", "whole", "units"}
+_ROWS = {"data", "whole", "before", "units"}
 _TYPES = {name: kind for name, kind in get_type_hints(Result).items() if name not in _ROWS}
 
 

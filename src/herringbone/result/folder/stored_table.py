@@ -49,6 +49,11 @@ class StoredTable:
         values = read_rows(self.folder / ROWS, len(self.columns), first, self.rows)
         return self._frame(values, self._others(first))
 
+    def before(self, rows: int) -> pd.DataFrame:
+        """Reals of the records before the last rows, read when they are used."""
+        values = mapped_rows(self.folder / ROWS, len(self.columns), self.rows - rows)
+        return self._frame(values, {}, copy=False)
+
     def all(self) -> pd.DataFrame:
         """All rows; reals of long runs are read when they are used. Raises HerringboneError."""
         if self.rows <= self.kept:

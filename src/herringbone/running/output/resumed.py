@@ -92,7 +92,10 @@ def _read(folder: Path) -> Resumed | Result:
     if run.state is State.COMPLETE:
         return result
     if table.kept < table.rows:
-        result = replace(result, data=table.last(table.kept), whole=table.overview())
+        kept = table.kept
+        result = replace(
+            result, data=table.last(kept), whole=table.overview(), before=table.before(kept)
+        )
     store = CheckedStore(folder, run, result, table.rows, table.rows)
     store.reopen()
     try:

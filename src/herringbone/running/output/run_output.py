@@ -127,7 +127,7 @@ class RunOutput:
             f"figures are taken from {since:.6g} s on, the last {rows} of {table.rows} records; "
             f"{self.shown} has all"
         )
-        return replace(result.noted(note), whole=table.overview())
+        return replace(result.noted(note), whole=table.overview(), before=table.before(rows))
 
     def write(self, result: Result) -> None:
         """Write all files; a better run replaces the one before.

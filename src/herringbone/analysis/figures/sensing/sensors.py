@@ -13,7 +13,12 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from herringbone.analysis.asked import signal
-from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
+from herringbone.analysis.figures.modal_response import (
+    housing_of,
+    modal_velocity,
+    moving_start,
+    seat_forces,
+)
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.remembered_figures import figure_of
 from herringbone.analysis.figures.sensing.lines import Felt, SensorLine, sensor_lines
@@ -116,7 +121,7 @@ def _followed(result: Result) -> Iterator[object]:
     """What figures of sensors follow from: a table may be changed in place."""
     info = result.info
     yield from (info.system, info.sensors, info.anatomy, result.outcome.unstable)
-    yield result.data[TIME].to_numpy(float)
+    yield from (result.first_record, result.data[TIME].to_numpy(float))
     for part in dict.fromkeys(spec.part for spec in info.sensors.values()):
         try:
             housing = housing_of(result, part)
@@ -155,7 +160,8 @@ def _motion(result: Result, part: str) -> tuple[ModalHousing, np.ndarray]:
         raise ParameterError("the run left too few rows, or diverged")
     time = result.data[TIME].to_numpy()
     step = float(time[-1] - time[0]) / (time.size - 1)
-    return housing, modal_velocity(housing, seat_forces(result, part), step)
+    start = moving_start(result, housing, part)
+    return housing, modal_velocity(housing, seat_forces(result, part), step, start)
 
 
 def _figures(
