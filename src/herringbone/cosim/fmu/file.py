@@ -141,10 +141,10 @@ def extract_fmu(file: Path) -> Path:
         FmuError: the folder for temporary files has a path that pythonfmu cannot decode.
     """
     with filled_folder() as folder:
-        if not str(folder).isascii() or "#" in str(folder) or "%" in str(folder):
+        if "%" in folder.as_uri().replace("%20", ""):  # of its escapes it decodes spaces alone
             raise FmuError(
                 f"temporary folder {folder} has characters that Python FMUs cannot load from; "
-                "set TMPDIR to a plain ASCII path"
+                "set TMPDIR to a path of ASCII letters, digits, _ . - ~ / and spaces"
             )
         with open_archive(file, "an FMU", FmuError) as archive:
             archive.extract(folder)
