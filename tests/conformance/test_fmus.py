@@ -264,6 +264,17 @@ def test_state_of_another_component_is_refused(started):
         assert "two: the FMU state belongs to" in "".join(two.messages())
 
 
+@pytest.mark.parametrize("place", [-6, -100])
+def test_a_damaged_state_is_refused(place, started):
+    host = started("drive_motor")
+    run(host, "drive_motor")
+    damaged = bytearray(serialised_state(host))
+    damaged[place] ^= 0x08  # in a parameter, or a state
+    with pytest.raises(FMICallException):
+        restore(host, bytes(damaged))
+    assert "the serialised FMU state is damaged" in "".join(host.messages())
+
+
 def test_all_components_twice_in_one_process_are_not_confused(started):
     hosts = [started(name, f"{name}_{turn}") for turn in range(2) for name in NAMES]
     results = [run(host, name) for host, name in zip(hosts, NAMES * 2, strict=True)]

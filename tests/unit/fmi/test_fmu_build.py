@@ -115,3 +115,14 @@ def test_serialised_state():
     assert from_bytes(to_bytes(state)) == state
     for wrong in (b"", b"{}", b"[1]\n", b"\xff\n", b'{"owner": "x"}\n'):
         assert from_bytes(wrong) is None
+        assert from_bytes(b"0123\n" + wrong) is None
+
+
+def test_a_flipped_bit_of_a_serialised_state_is_noticed():
+    """Whichever it is: no state, or one without data."""
+    whole = to_bytes(FmuState("owner", b"\x00\n\xff", {"table": "ä.csv"}, "1f", 2, 0.1))
+    for bit in range(8 * len(whole)):
+        damaged = bytearray(whole)
+        damaged[bit // 8] ^= 1 << bit % 8
+        state = from_bytes(bytes(damaged))
+        assert state is None or state.data == b""

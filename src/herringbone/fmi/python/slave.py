@@ -277,7 +277,8 @@ class ComponentSlave(GuardedSlave):
         """Restore a state.
 
         Raises:
-            FmuError: it belongs to another component, version or resource, or this FMU does.
+            FmuError: it is damaged, or belongs to another component, version or resource, or this
+                FMU does.
         """
         self._failure = ""
         self._attempt(self._restore, saved)
@@ -287,12 +288,14 @@ class ComponentSlave(GuardedSlave):
     def _restore(self, saved: FmuState | None) -> None:
         if self._unfit:
             raise FmuError(self._unfit)
-        if saved is None or saved.owner != self._owner or len(saved.data) != self._saved.nbytes:
+        if saved is None or saved.owner != self._owner:
             raise FmuError(
                 f"{self.instance_name}: the FMU state belongs to "
                 f"'{saved.owner if saved else 'something else'}', not to '{self._owner}'; "
                 "restore states of the same component and version only"
             )
+        if len(saved.data) != self._saved.nbytes:
+            raise FmuError(f"{self.instance_name}: the serialised FMU state is damaged")
         if saved.tables != self._tables:
             self._restore_resources(saved)
         if saved.data[self._first_parameter :] != self._saved[self._first_parameter :]:
