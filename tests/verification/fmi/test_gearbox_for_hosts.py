@@ -12,8 +12,10 @@ import numpy as np
 import pytest
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
+from fmpy.fmi3 import fmi3IntermediateUpdateCallback
 from support.compiler import needs_compiler
 from support.hosts.fmi2 import Fmi2Host
+from support.hosts.fmi3 import Fmi3Host
 
 from herringbone.core import ParameterError
 from herringbone.core.declaring.hosting import Given, Wanted
@@ -152,6 +154,95 @@ def test_held_angle_runs_on(ripple, exported, tmp_path):
     held = torque_at_given_motion(exported(1), tmp_path / "h", 1e-3, ripple)
     assert fine == pytest.approx(-200.0, rel=1e-3)  # what balances 600 N m
     assert held == pytest.approx(fine, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "calls",
+    [
+        ("pinion.w wheel.w",),
+        ("wheel.w pinion.w pinion.phi",),
+        ("pinion.phi", "pinion.w wheel.w"),
+        ("pinion.w", "wheel.w", "pinion.phi"),
+    ],
+)
+def test_a_speed_that_is_set_alone_moves_no_angle(calls, exported, tmp_path):
+    """0.01 % after 2 s: the angle had jumped by 0.021 rad, by which the torque turned round.
+
+    Whether the host integrates the angle or leaves it, and in whatever order it sets it: torques
+    differ by the angle's last digit times the shaft's stiffness, and by the steps' tolerance.
+    """
+    faster, turned = 1.0001 * SPEED, 2.0 * SPEED
+
+    def run(calls, folder):
+        start = {"pinion.phi": 0.0, "pinion.w": SPEED, "wheel.w": SPEED / RATIO}
+        host = Fmi2Host(exported(3), folder, values=start)
+        given = {"pinion.phi": turned, "pinion.w": faster, "wheel.w": faster / RATIO}
+        for k in range(2):
+            host.step(float(k), 1.0)
+        for call in calls:
+            host.set({name: given[name] for name in call.split()})
+        rows = []
+        for k in range(10):
+            host.step(2.0 + k * 1e-4, 1e-4)
+            rows.append(host.get("pinion.tau", *forces(host)))
+        return np.array(rows)
+
+    expected = run(("pinion.phi pinion.w wheel.w",), tmp_path / "integrated")
+    assert np.abs(expected[:, 0] + 200.0).max() < 20.0
+    digit = np.spacing(turned) * 1e5 / 0.023  # N, as below
+    found = run(calls, tmp_path / "found")
+    assert np.abs(found - expected).max() < 10.0 * digit + 1e-5 * np.abs(expected).max()
+
+
+def test_an_angle_goes_on_from_where_its_rate_s_derivatives_brought_it(exported, tmp_path):
+    """A speed that grows by a W, its angle left to it: (t + a t^2/2) W, as the host integrates.
+
+    Without: each set took 0.5 a W H^2 back, 20 times 5e-4 rad / 400 at H = 1 ms.
+    """
+    share, step = 10.0, 1e-3
+    found = {}
+    for integrated in (True, False):
+        host = Fmi2Host(exported(3), tmp_path / str(integrated), values={"pinion.w": SPEED})
+        for k in range(20):
+            t, wanted = k * step, {}
+            for name, speed in (("pinion.w", SPEED), ("wheel.w", SPEED / RATIO)):
+                wanted[name] = speed * (1.0 + share * t)
+            if integrated:
+                wanted["pinion.phi"] = SPEED * (t + share * t * t / 2.0)
+            host.set(wanted)
+            slopes = [share * SPEED, share * SPEED / RATIO]
+            names = [host.reference[n] for n in ("pinion.w", "wheel.w")]
+            host.slave.setRealInputDerivatives(names, [1, 1], slopes)
+            host.step(t, step)
+        found[integrated] = host.get("pinion.tau", *forces(host))
+    assert found[False] == pytest.approx(found[True], rel=1e-5, abs=1e-3)
+
+
+def test_speeds_alone_within_steps(exported, tmp_path):
+    """FMI 3.0: by the integral of a polynomial of degree 4, whose error is (W h)^6 of a share."""
+    wave, share, step = 377.0, 1e-3, 1e-4
+
+    def swing(t):
+        return 1.0 + share * math.sin(wave * t)
+
+    def torques(integrated, folder):
+        def update(_environment, t, asks, *_others):
+            if asks:
+                part.set({"pinion.w": SPEED * swing(t), "wheel.w": SPEED / RATIO * swing(t)})
+            if asks and integrated:
+                part.set({"pinion.phi": SPEED * (t + share * (1.0 - math.cos(wave * t)) / wave)})
+
+        asked = fmi3IntermediateUpdateCallback(update)
+        part = Fmi3Host(exported(3, 3), folder, None, intermediateUpdate=asked)
+        rows = []
+        for k in range(100):
+            part.step(k * step, step)
+            rows.append(part.get("pinion.tau")[0])
+        return np.array(rows)
+
+    wanted = torques(True, tmp_path / "integrated")
+    assert np.ptp(wanted) > 1.0  # N m
+    assert np.abs(torques(False, tmp_path / "alone") - wanted).max() < 1e-5 * np.abs(wanted).max()
 
 
 def test_derivatives_of_the_angle_count_alone(exported, tmp_path):

@@ -58,7 +58,7 @@ def offset(flange: HostFlange) -> str:
 
 
 def since(flange: HostFlange) -> str:
-    """Name of the local: time at which the host set the angle [s]."""
+    """Name of the local: time at which the angle has the value of the input [s]."""
     return f"{flange.name}.since"
 
 
@@ -198,7 +198,7 @@ def _locals(boundary: Boundary, tolerance: float) -> Iterator[Variable]:
         if f.shaft:
             yield local(offset(f), "rad", "angle of the shaft's end where the host's angle is 0")
         if f.given is Given.MOTION:
-            yield local(since(f), "s", f"time at which {f.name}.phi was set")
+            yield local(since(f), "s", f"time at which {f.name}.phi has its value")
             yield local(lead(f), "s", "time from then to the start of the communication step")
     yield replace(local(TOLERANCE, "1", "of inner steps"), start=tolerance)
     yield replace(local(NEXT_STEP, "s", "length of the next inner step"), start=FIRST)

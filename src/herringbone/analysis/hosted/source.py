@@ -1,10 +1,10 @@
 """Source of the kernels that a gearbox for hosts has besides its parts.
 
-**Flanges.** The end of a shaft has the angle phi + w (t - t_set) + offset, where the host holds
-the angle phi that it set at t_set; while it gives nodes or derivatives, phi + offset alone. Where
-it gives speed alone, phi is a state. tau_mean is the integral of tau since the start of the step,
-over the time since then. Inside a step, time counts from its start, so that a start time does not
-change a bit.
+**Flanges.** The end of a shaft has the angle phi + w (t - since) + offset, where the host has set
+the angle phi at `since`, or it has run on to there when w was set; while the host gives nodes or
+derivatives, phi + offset alone. Where it gives speed alone, phi is a state. tau_mean is the
+integral of tau since the start of the step, over the time since then. Inside a step, time counts
+from its start, so that a start time does not change a bit.
 """
 
 from herringbone.analysis.hosted.start_places import FlangePlaces, StartPlaces

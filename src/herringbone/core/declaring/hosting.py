@@ -39,12 +39,13 @@ class Wanted:
 
 
 class RunsOn(NamedTuple):
-    """An input that is the integral of another one: a held value of it runs on.
+    """An input that is the integral of another one: where it is not set, it runs on.
 
     Attributes:
         input: name of the input, such as an angle.
         rate: name of the input that is its rate.
-        since: name of the local that the wrapper sets to the time [s] at which the input was set.
+        since: name of the local that the wrapper sets to the time [s] at which the input was set,
+            or to which it has run on.
     """
 
     input: str

@@ -30,9 +30,10 @@ _SIGNS = (
 )
 _HOSTED = (
     "A flange that takes motion has its shaft inside; angles count from the start, where the shaft "
-    "has its initial torque. A held angle runs on: phi + w (t - time of the last set); if the host "
-    "gives derivatives of phi, these alone count. tau_mean is the mean of tau over the last "
-    "communication step: its product with the mean speed is the energy that was handed over. "
+    "has its initial torque. An angle that is not set runs on as the integral of w, also where w "
+    "alone is set; if the host gives derivatives of phi, these alone count. tau_mean is the mean "
+    "of tau over the last communication step: its product with the mean speed is the energy that "
+    "was handed over. "
     "At the start the elastic coordinates vibrate as they do when all has settled under the "
     "torques. start_mode = equilibrium: they move as one with the gears, which is no part of that "
     "vibration, so that another one rings down; as_set: they start undeformed, or as states are "

@@ -80,10 +80,10 @@ typedef struct {
     const char *elements; /* what they stand for, such as "modes" */
 } HbVector;
 
-/* An input that is the integral of another one: what the host set runs on with the rate that it set. */
+/* An input that is the integral of another one: where the host does not set it, it runs on. */
 typedef struct {
     uint32_t input, rate; /* value references */
-    uint32_t since;       /* index of the local that has the time at which the input was set */
+    uint32_t since;       /* index of the local that has the time of the input's value */
 } HbRunsOn;
 
 struct Instance;

@@ -14,7 +14,7 @@ static void expand(double *signal, const double *slopes, uint32_t degree, double
 }
 
 /* An input that runs on, of which the host gave no derivative: from its value now, with its rate and
-   the derivatives of that. The last set value, for which it stands, comes back after the step. */
+   the derivatives of that. */
 static void run_on(Instance *instance, const HbRunsOn *which) {
     Moment *now = &instance->now;
     uint32_t input = instance_input_number(which->input);

@@ -38,7 +38,7 @@ Status instance_enter_initialisation(Instance *instance) {
     if (instance->now.phase != PHASE_INSTANTIATED)
         return instance_refuse(instance, "enterInitializationMode");
     instance->now.phase = PHASE_INITIALISATION;
-    instance_stamp(instance);
+    instance_run_on(instance);
     instance->outdated = true;
     return STATUS_OK;
 }

@@ -140,9 +140,8 @@ Status instance_set(Instance *instance, const uint32_t references[], size_t coun
 /* Tell that there are no variables of these references and type. */
 Status instance_unknown(Instance *instance, const char *type, const uint32_t references[],
                         size_t count);
-/* Inputs that run on are those of the present time: all of them, or those that are set. */
-void instance_stamp(Instance *instance);
-void instance_stamp_set(Instance *instance, const uint32_t references[], size_t count);
+/* Inputs that run on are those of the present time; between steps they have come there. */
+void instance_run_on(Instance *instance);
 bool instance_is_real(uint32_t reference);
 /* Enumerations by value reference. */
 Status instance_get_choice(Instance *instance, uint32_t reference, int64_t *value);
@@ -185,7 +184,7 @@ Status instance_set_within_step(Instance *instance, const uint32_t references[],
                                 const double values[]);
 /* Ask for the inputs at all nodes of the next step, and write them; false if none was given. */
 bool instance_ask_inputs(Instance *instance, double step_size);
-/* After that step: inputs have the values that were given last. */
+/* After that step: inputs have the values of its end. */
 void instance_keep_last_inputs(Instance *instance);
 
 /* fmu_state.c */

@@ -44,7 +44,7 @@ Status instance_move_time(Instance *instance, double time) {
         return instance_refuse(instance, "setTime");
     instance->outdated = instance->rates_outdated = true;
     Status status = instance_set_time(instance, time, "time");
-    instance_stamp(instance); /* an integrator's inputs are those of its time */
+    instance_run_on(instance); /* an integrator's inputs are those of its time */
     return status;
 }
 

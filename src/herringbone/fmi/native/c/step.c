@@ -68,20 +68,13 @@ static int32_t step(Instance *instance, double time, double step_size) {
     return hb_component.step(instance->block, instance->work, time, step_size);
 }
 
-/* Most inputs that run on. */
-enum { RUNS_ON = 8 };
-
 /* Input derivatives are told to the kernels as nodes, of the degree of their highest order. */
 static int32_t step_along_derivatives(Instance *instance, double time, double step_size) {
-    double *live = &instance->block[hb_component.degree], held[RUNS_ON];
-    for (uint32_t k = 0; k < hb_component.runs_on_count; k++)
-        held[k] = instance->block[hb_component.runs_on[k].input];
+    double *live = &instance->block[hb_component.degree];
     instance->now.last_degree = input_derivatives_to_nodes(instance, step_size);
     *live = instance->now.last_degree;
     int32_t failed = step(instance, time, step_size);
     *live = 0.0;
-    for (uint32_t k = 0; k < hb_component.runs_on_count; k++)
-        instance->block[hb_component.runs_on[k].input] = held[k];
     return failed;
 }
 
@@ -103,6 +96,16 @@ static int32_t step_along_inputs(Instance *instance, double time, double step_si
     if (instance->update && hb_component.inputs && !instance->now.last_degree && step_size > 0.0)
         return step_along_updates(instance, time, step_size);
     return step(instance, time, step_size);
+}
+
+/* What runs on goes on from the end of its nodes. */
+static void leave_nodes(Instance *instance) {
+    double *block = instance->block;
+    for (uint32_t k = 0; instance->now.last_degree && k < hb_component.runs_on_count; k++) {
+        const HbRunsOn *which = &hb_component.runs_on[k];
+        block[which->input] = block[which->input + instance->now.last_degree];
+        block[which->since] = instance->now.time;
+    }
 }
 
 static Status refuse_two_signals(Instance *instance) {
@@ -157,6 +160,7 @@ Status instance_step(Instance *instance, double time, double step_size) {
     }
     now->time = time + step_size;
     now->end_node = now->last_degree;
+    leave_nodes(instance);
     if (hb_component.watch)
         hb_component.watch->after_step(instance);
     instance_tell_remarks(instance);

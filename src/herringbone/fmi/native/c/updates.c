@@ -26,10 +26,9 @@ Status instance_set_within_step(Instance *instance, const uint32_t references[],
 }
 
 /* An input that runs on, which the host did not give: the integral of its rate. */
-static void run_on(Instance *instance, const HbRunsOn *which, double start, double step_size) {
+static void run_on(Instance *instance, const HbRunsOn *which, double step_size) {
     double *signal = instance->block + which->input;
     const double *rate = instance->block + which->rate;
-    signal[0] += rate[0] * (start - instance->block[which->since]);
     for (uint32_t node = 1; node < HB_STRIDE; node++) {
         double sum = 0.0;
         for (uint32_t i = 0; i < HB_STRIDE; i++)
@@ -42,6 +41,7 @@ bool instance_ask_inputs(Instance *instance, double step_size) {
     double start = instance->now.time, *first = instance->slopes;
     instance->given = 0;
     instance->asks = true;
+    instance_run_on(instance);
     for (uint32_t node = 0; node < HB_STRIDE; node++) {
         instance->now.time = start + step_size * node / HIGHEST_ORDER;
         instance->update(instance, UPDATE_ASKS);
@@ -61,18 +61,14 @@ bool instance_ask_inputs(Instance *instance, double step_size) {
         *signal_of(instance, i) = first[i];
     for (uint32_t k = 0; k < hb_component.runs_on_count; k++)
         if (!(instance->given >> (instance_input_number(hb_component.runs_on[k].input) & 31u) & 1u))
-            run_on(instance, &hb_component.runs_on[k], start, step_size);
+            run_on(instance, &hb_component.runs_on[k], step_size);
     return true;
 }
 
 void instance_keep_last_inputs(Instance *instance) {
-    const double *first = instance->slopes;
     for (uint32_t i = 0; i < hb_component.inputs; i++) {
         double *signal = signal_of(instance, i);
-        if (instance->given >> (i & 31u) & 1u)
-            signal[0] = signal[HIGHEST_ORDER];
-        else
-            signal[0] = first[i];
+        signal[0] = signal[HIGHEST_ORDER];
     }
     memset(instance->slopes, 0, hb_component.inputs * sizeof *instance->slopes);
 }

@@ -213,22 +213,21 @@ static Status set_checked(Instance *instance, uint32_t reference, double value) 
     return STATUS_OK;
 }
 
-void instance_stamp(Instance *instance) {
-    for (uint32_t k = 0; k < hb_component.runs_on_count; k++)
-        instance->block[hb_component.runs_on[k].since] = instance->now.time;
-}
-
-void instance_stamp_set(Instance *instance, const uint32_t references[], size_t count) {
-    for (uint32_t k = 0; k < hb_component.runs_on_count; k++)
-        for (size_t i = 0; i < count; i++)
-            if (references[i] == hb_component.runs_on[k].input)
-                instance->block[hb_component.runs_on[k].since] = instance->now.time;
+void instance_run_on(Instance *instance) {
+    double *block = instance->block, time = instance->now.time;
+    for (uint32_t k = 0; k < hb_component.runs_on_count; k++) {
+        const HbRunsOn *which = &hb_component.runs_on[k];
+        if (instance->now.phase == PHASE_STEP)
+            block[which->input] += block[which->rate] * (time - block[which->since]);
+        block[which->since] = time;
+    }
 }
 
 Status instance_set(Instance *instance, const uint32_t references[], size_t count,
                     const double values[]) {
     if (instance->now.phase == PHASE_TERMINATED)
         return instance_refuse(instance, "setReal");
+    instance_run_on(instance); /* with the rate up to now, which may be set anew */
     Status worst = STATUS_OK;
     for (size_t i = 0; i < count; i++) {
         uint32_t reference = references[i];
@@ -243,8 +242,6 @@ Status instance_set(Instance *instance, const uint32_t references[], size_t coun
             worst = status > worst ? status : worst;
         }
     }
-    if (hb_component.runs_on_count)
-        instance_stamp_set(instance, references, count);
     outdate(instance);
     return worst;
 }
