@@ -18,6 +18,8 @@ from herringbone.core.reading.numbers import number
 from herringbone.core.reading.xml import LARGEST_XML, parse_xml
 
 _DESCRIPTION = "modelDescription.xml"
+_PYTHON = "resources/slavemodule.txt"
+"""By which pythonfmu finds its class."""
 _USABLE = re.compile(r"2\.0|3\.0(\.\d+)?")
 _MOST_REFERENCE: Final = 2**32
 
@@ -138,14 +140,14 @@ def extract_fmu(file: Path) -> Path:
     """Extract a checked FMU to a new temporary folder, whose path Python FMUs can load from.
 
     Raises:
-        FmuError: the folder for temporary files has a path that pythonfmu cannot decode.
+        FmuError: it is a Python FMU, and pythonfmu cannot decode the path of that folder.
     """
-    with filled_folder() as folder:
-        if "%" in folder.as_uri().replace("%20", ""):  # of its escapes it decodes spaces alone
+    with filled_folder() as folder, open_archive(file, "an FMU", FmuError) as archive:
+        undecoded = "%" in folder.as_uri().replace("%20", "")  # it decodes spaces alone
+        if undecoded and _PYTHON in archive.names:
             raise FmuError(
                 f"temporary folder {folder} has characters that Python FMUs cannot load from; "
                 "set TMPDIR to a path of ASCII letters, digits, _ . - ~ / and spaces"
             )
-        with open_archive(file, "an FMU", FmuError) as archive:
-            archive.extract(folder)
+        archive.extract(folder)
     return folder

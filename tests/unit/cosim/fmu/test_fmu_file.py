@@ -200,6 +200,8 @@ def test_extract_refuses_paths_that_python_fmus_cannot_load_from(tmp_path, monke
     temporary = tmp_path / name
     temporary.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    of_python = write(tmp_path, description(), (BINARY, "resources/slavemodule.txt"))
     with pytest.raises(FmuError, match="set TMPDIR to a path of ASCII letters, digits,"):
-        extract_fmu(write(tmp_path, description()))
+        extract_fmu(of_python)
     assert not list(temporary.iterdir())
+    assert (extract_fmu(write(tmp_path, description())) / BINARY).is_file()
