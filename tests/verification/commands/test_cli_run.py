@@ -145,12 +145,27 @@ def test_results_csv(tmp_path, capsys):
     pd.testing.assert_frame_equal(parquet, table, check_exact=True)
 
 
+SHORT = ("--t-end", "0.001", "--scene", "runup", "--start", "rest", "--fmu", "in-process")
+
+
 def test_default_folder(tmp_path, capsys, monkeypatch):
+    """What others have filled gets a number, and a line says so."""
     monkeypatch.chdir(tmp_path)
-    options = ("--t-end", "0.001", "--scene", "runup", "--start", "rest", "--fmu", "in-process")
-    assert main(["run", "test_rig", *options]) == 0
+    assert main(["run", "test_rig", *SHORT]) == 0
     assert capsys.readouterr().out.startswith("test_rig, scene runup: completed")
     assert (tmp_path / "results" / "test_rig-runup" / "results.csv").is_file()
+    assert main(["run", "test_rig", *SHORT, "--record-step", "1e-4"]) == 0
+    assert "results go to results/test_rig-runup-2: " in capsys.readouterr().err
+    assert (tmp_path / "results" / "test_rig-runup-2" / "results.csv").is_file()
+
+
+@pytest.mark.parametrize(("given", "name"), [(".", "here"), ("", "here"), ("..", "")])
+def test_the_current_folder_and_the_one_above(tmp_path, capsys, monkeypatch, given, name):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    assert main(["run", "test_rig", *SHORT, "--no-pictures", "-o", given]) == 0
+    assert (tmp_path / name / "results.csv").is_file()
+    assert capsys.readouterr().out.startswith("test_rig, scene runup: completed")
 
 
 def read_until(terminal, text, seconds):

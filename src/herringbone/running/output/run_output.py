@@ -80,8 +80,9 @@ class RunOutput:
         named = self.folder is not None
         claim = Claim(self._start / wanted, named, key, settings, self.overwrite)
         self._lock = claimed(claim)
-        self.shown = wanted.with_name(self._lock.folder.name)
-        if self.shown != wanted:
+        self.shown = wanted
+        if self._lock.folder != claim.folder:  # it got a number; "." has no name to change
+            self.shown = wanted.with_name(self._lock.folder.name)
             self.notes.append(
                 f"results go to {self.shown}: {wanted} holds a run of other settings, or of an "
                 f"older version; {option('overwrite', True)} overwrites it"
