@@ -1,6 +1,8 @@
 """Bad input through the command line: one clear line, a non-zero exit code."""
 
 import math
+import os
+import sys
 import zipfile
 
 import fmpy
@@ -242,3 +244,19 @@ def test_folder_that_cannot_be_written(refused, tmp_path, folder):
     assert f"cannot write to {folder}: " in line
     assert "choose another folder with -o" in line
     assert ("nothing can be made in /proc" in line) == folder.startswith("/proc")
+
+
+@pytest.mark.parametrize("folder", [b"out\xff", b"out\xff/below"])
+def test_results_go_into_no_folder_that_they_cannot_name(tmp_path, refused, folder):
+    """A run was computed to its end, and its results could not be loaded."""
+    line = refused("-o", os.fsdecode(folder))
+    assert r"the name 'out\udcff' is not UTF-8; choose another folder" in line
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names are any bytes on Linux alone")
+def test_a_file_that_results_cannot_name(tmp_path, refused):
+    file = write_table(tmp_path / os.fsdecode(b"t\xff.csv"), secant)
+    line = refused("--set", f"gear_mesh.stiffness_table={file}", "-o", "out")
+    assert r"t\udcff.csv' is not UTF-8; rename it" in line
+    assert not (tmp_path / "out").exists()

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO
 
+from herringbone.core.names import shown
 from herringbone.core.places.noted import note
 
 PART = ".part"
@@ -71,6 +72,19 @@ def is_folder(path: Path) -> bool:
     """True for a folder; False also for what no folder can be called."""
     note(path)
     return os.path.isdir(path)  # noqa: PTH112 (pathlib's raises for such names)
+
+
+def not_utf8(path: Path) -> str:
+    """The first name on the way to a path that no text can hold, in quotes; "" if there is none.
+
+    On Linux a name is any bytes, and those that are not UTF-8 cannot be written into a file.
+    """
+    for name in path.absolute().parts:
+        try:
+            name.encode()
+        except UnicodeEncodeError:
+            return shown(name)
+    return ""
 
 
 def beside(value: float | str, folder: Path) -> float | str:

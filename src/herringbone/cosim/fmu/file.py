@@ -11,7 +11,7 @@ import fmpy
 from fmpy.model_description import ModelDescription, read_model_description
 
 from herringbone.core import FmuError
-from herringbone.core.places.files import is_file, is_folder
+from herringbone.core.places.files import is_file, is_folder, not_utf8
 from herringbone.core.places.temporary import filled_folder
 from herringbone.core.reading.archives import open_archive
 from herringbone.core.reading.numbers import number
@@ -37,10 +37,12 @@ def read_fmu(file: str | Path) -> ModelDescription:
 
     Raises:
         FmuError: no file, no zip, unsafe names or XML, another FMI version or kind, no binary for
-            this platform.
+            this platform, or a name on its way, or on that to the current folder, is not UTF-8.
     """
     file = Path(file)
     require_file(file)
+    if name := not_utf8(file):  # FMUs are told their place as UTF-8
+        raise FmuError(f"{file}: the name {name} is not UTF-8; rename it")
     with open_archive(file, "an FMU", FmuError) as archive:
         names = archive.names
         if _DESCRIPTION not in names:
@@ -53,6 +55,11 @@ def read_fmu(file: str | Path) -> ModelDescription:
         _check_names(model)
         _check_numbers(model)
         _take_differences(model, root)
+    except UnicodeEncodeError as error:  # libxml2 asks for the current folder
+        raise FmuError(
+            f"{file}: no FMU can be read from the current folder, as its name "
+            f"{not_utf8(Path.cwd())} is not UTF-8; rename it, or cd to another"
+        ) from error
     except Exception as error:  # fmpy raises bare Exception for every defect of the XML
         raise FmuError(
             f"{file}: {_DESCRIPTION} cannot be read: {error or type(error).__name__}"

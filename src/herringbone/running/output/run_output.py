@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import HerringboneError
+from herringbone.core.places.files import not_utf8
 from herringbone.core.wording import option
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.structure.system import System
@@ -67,8 +68,9 @@ class RunOutput:
         """Choose the folder and keep others out of it, before anything is computed or written.
 
         Raises:
-            HerringboneError: another run is there, or writes there.
+            HerringboneError: another run is there, or writes there, or a name is not UTF-8.
         """
+        self._check_names()
         settings = settings_of(system, scene, options)
         key = key_of(settings)
         if self.resumed is not None:
@@ -91,6 +93,17 @@ class RunOutput:
             State.RUNNING, (), {}, key=key, settings=settings, asked=self.asked,
             folder=str(self._start),
         )  # fmt: skip
+
+    def _check_names(self) -> None:
+        """Refuse names that the files of a run would tell and no text can hold."""
+        if name := not_utf8(self.path):
+            raise HerringboneError(
+                f"cannot write {self.path}: the name {name} is not UTF-8; choose another folder"
+            )
+        for value in self.asked.values():
+            for given in value if isinstance(value, list) else [value]:
+                if name := not_utf8(Path(str(given))):
+                    raise HerringboneError(f"the name {name} is not UTF-8; rename it")
 
     def stream(self, start: Result, every: int = 1, *, keeps_all: bool = False) -> Streaming:
         """Where the rows of the run go.

@@ -1,6 +1,8 @@
 """What is checked of an FMU file before anything of it is loaded."""
 
+import os
 import re
+import sys
 import tempfile
 import zipfile
 
@@ -59,6 +61,19 @@ def test_missing_file(tmp_path):
 
 def test_folder(tmp_path):
     refused("is a folder; give an .fmu file", tmp_path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names are any bytes on Linux alone")
+def test_names_that_are_not_utf8(tmp_path, monkeypatch):
+    """Of the file, a folder on its way, or the current one: the FMU is not to blame."""
+    good = write(tmp_path, description())
+    folder = tmp_path / os.fsdecode(b"d\xff")
+    folder.mkdir()
+    said = r"the name 'd\udcff' is not UTF-8; rename it"
+    with pytest.raises(FmuError, match=re.escape(said)):
+        read_fmu(write(folder, description()))
+    monkeypatch.chdir(folder)
+    refused(r"the current folder, as its name 'd\udcff' is not UTF-8; rename it, or cd", good)
 
 
 @pytest.mark.parametrize("content", [b"", b"not a zip", b"PK\x03\x04 cut"])
