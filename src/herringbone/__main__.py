@@ -9,7 +9,10 @@ import sys
 def main() -> int:
     """Run the command line; returns the exit code."""
     try:
-        from herringbone.commands.main import main as run  # noqa: PLC0415 (see above)
+        from herringbone.core.process.streams import open_streams  # noqa: PLC0415 (see above)
+
+        open_streams()
+        from herringbone.commands.main import main as run  # noqa: PLC0415
     except KeyboardInterrupt:
         sys.stderr.write("herringbone: interrupted\n")
         return 130

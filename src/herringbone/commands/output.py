@@ -15,6 +15,7 @@ from types import FrameType
 
 from herringbone.core import HerringboneError
 from herringbone.core.errors import reason
+from herringbone.core.process.streams import write_line
 from herringbone.core.process.termination import forget_signals, note_signal
 from herringbone.core.wording import words_of_commands
 
@@ -30,8 +31,8 @@ _OPENSSL = "[digital envelope routines]"
 
 
 def say(text: str) -> None:
-    """A line about the course of a command: an error, a note."""
-    sys.stderr.write(text + "\n")
+    """A line about the course of a command: an error, a note; lost where nobody can read it."""
+    write_line(text)
 
 
 def show(text: str) -> None:

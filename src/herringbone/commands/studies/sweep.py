@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -130,7 +129,7 @@ def run(options: argparse.Namespace) -> int:
             parquet=options.parquet,
             output=folder,
             overwrite=options.overwrite,
-            told=lambda ahead: tqdm.write(ahead, file=sys.stderr),
+            told=say,
             progress=bar.update,
         )
     from herringbone.plotting.studies.pictures import write_study_pictures  # noqa: PLC0415

@@ -5,7 +5,6 @@ there; otherwise they stand on stderr, in a terminal as in a notebook, above pro
 """
 
 import logging
-import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,6 +13,7 @@ from time import monotonic
 
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.places.paths import cache_root
+from herringbone.core.process.streams import write_line
 
 _PATIENCE = 2.0
 """Seconds for which nothing need be said."""
@@ -32,13 +32,8 @@ class _Shown(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Write a line."""
-        if _is_set_up():
-            return
-        bars = sys.modules.get("tqdm")
-        if bars is not None:
-            bars.tqdm.write(self.format(record), file=sys.stderr)
-        else:
-            sys.stderr.write(self.format(record) + "\n")
+        if not _is_set_up():
+            write_line(self.format(record))
 
 
 _LOG = logging.getLogger("herringbone.activity")

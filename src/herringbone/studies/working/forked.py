@@ -40,7 +40,7 @@ class ForkedProcess:
     def __init__(self) -> None:
         calls, self.stdin = _pipe()
         self.stdout, answers = _pipe()
-        for stream in (sys.stdout, sys.stderr):
+        for stream in filter(None, (sys.stdout, sys.stderr)):  # closed ones are None
             stream.flush()  # else the copy has it, too
         self.pid = os.fork()
         if self.pid == 0:
