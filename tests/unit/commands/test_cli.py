@@ -1,6 +1,9 @@
 """The command line: help, list, version, build, check, export, exit codes."""
 
 import gc
+import os
+import subprocess
+import sys
 import zipfile
 
 import pytest
@@ -239,3 +242,17 @@ def test_cycles_are_seldom_searched_while_a_command_runs(monkeypatch, capsys):
     finally:
         gc.set_threshold(*before)
         main_module._parser.cache_clear()
+
+
+@pytest.mark.parametrize(
+    "call", [["-m", "herringbone", "list"], ["-c", "import herringbone as hb; hb.run('test_rig')"]]
+)
+def test_docstrings_are_needed(call):
+    """FMUs are documented by them; without, an attribute of None was missing."""
+    environment = {**os.environ, "PYTHONOPTIMIZE": "2", "PYTHONDONTWRITEBYTECODE": "1"}
+    command = [sys.executable, *call]
+    found = subprocess.run(command, check=False, capture_output=True, text=True, env=environment)
+    *before, line = found.stderr.splitlines()
+    assert line.endswith("run it without -OO and PYTHONOPTIMIZE=2")
+    assert bool(before) == ("-c" in call)
+    assert found.returncode == (1 if "-c" in call else BAD_INPUT)
