@@ -21,7 +21,7 @@ from herringbone.commands.gear import command as gear_command
 from herringbone.commands.housing import command as housing_command
 from herringbone.commands.listing import command as listing_command
 from herringbone.commands.options import add_command
-from herringbone.commands.output import as_command, say, show
+from herringbone.commands.output import as_command, check_current_folder, say, show
 from herringbone.commands.parser import BAD_INPUT, Parser
 from herringbone.commands.run import command as run_command
 from herringbone.commands.studies import modes as modes_command
@@ -44,6 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         with as_command(), _housing(options) as housing:
+            check_current_folder()
             if getattr(options, "fresh", False):
                 from herringbone.core.caching.tried import (  # noqa: PLC0415 (looks at all sources)
                     forget_tried,

@@ -148,6 +148,14 @@ def seldom_collected() -> Iterator[None]:
         gc.set_threshold(*before)
 
 
+def check_current_folder() -> None:
+    """Refuse to begin in a folder that has been removed; raises HerringboneError."""
+    try:
+        Path.cwd()
+    except FileNotFoundError as error:
+        raise HerringboneError("the current folder is gone; cd to another") from error
+
+
 def check_writable(folder: Path, file: Path | None = None) -> None:
     """Refuse before a run what would fail after it; leaves nothing behind.
 

@@ -244,6 +244,15 @@ def test_cycles_are_seldom_searched_while_a_command_runs(monkeypatch, capsys):
         main_module._parser.cache_clear()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="a current folder cannot be removed there")
+def test_a_current_folder_that_is_gone(capsys, monkeypatch, tmp_path):
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    line = refused(capsys, "list")
+    assert line == "herringbone: the current folder is gone; cd to another\n"
+
+
 @pytest.mark.parametrize(
     "call", [["-m", "herringbone", "list"], ["-c", "import herringbone as hb; hb.run('test_rig')"]]
 )

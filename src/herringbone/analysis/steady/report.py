@@ -210,8 +210,14 @@ def write_steady(state: SteadyState | SettledState, folder: Path) -> list[Path]:
     Of a state that was not found the second one alone.
 
     Amplitudes have the unit of their row.
+
+    Args:
+        state: that was searched for.
+        folder: that is there.
+
+    Raises:
+        OSError: a file cannot be written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     with replacing(folder / SUMMARY) as file:
         file.write(json.dumps(steady_summary(state), indent=1) + "\n")
     if not state.found:

@@ -19,7 +19,7 @@ from herringbone.commands.options import (
     replacements,
     spread_of,
 )
-from herringbone.commands.output import check_writable, say, show
+from herringbone.commands.output import check_writable, say, show, written_into
 from herringbone.result.folder.names import STEADY_PICTURE
 
 if TYPE_CHECKING:
@@ -101,18 +101,9 @@ def tell(
         sensitivity_text,
         steady_summary,
         steady_text,
-        write_steady,
     )
 
-    written = write_steady(state, folder) if folder else []
-    if folder and state.found and pictures:
-        from herringbone.plotting.studies.pictures import (  # noqa: PLC0415 (matplotlib: lazy)
-            write_steady_pictures,
-        )
-
-        written += write_steady_pictures(state, found, folder, spread)
-    elif folder:
-        (folder / STEADY_PICTURE).unlink(missing_ok=True)  # of a state before this one
+    written = _written(state, found, folder, spread, pictures=pictures) if folder else []
     if as_json:
         told = {g: {n: x.relative for n, x in own.items()} for g, own in found.items()}
         more = {"sensitivities": told} if told else {}
@@ -120,6 +111,29 @@ def tell(
     else:
         lines = [*steady_text(state), *sensitivity_text(found)]
         show("\n".join([*lines, *(f"Files: {f}" for f in written)]))
+
+
+def _written(
+    state: "SteadyState | SettledState",
+    found: Found,
+    folder: Path,
+    spread: float,
+    *,
+    pictures: bool,
+) -> list[Path]:
+    """Files of a state, see `tell`; raises HerringboneError."""
+    from herringbone.analysis.steady.report import write_steady  # noqa: PLC0415 (numba)
+
+    with written_into(folder):
+        files = write_steady(state, folder)
+        if state.found and pictures:
+            from herringbone.plotting.studies.pictures import (  # noqa: PLC0415 (matplotlib: lazy)
+                write_steady_pictures,
+            )
+
+            return files + write_steady_pictures(state, found, folder, spread)
+        (folder / STEADY_PICTURE).unlink(missing_ok=True)  # of a state before this one
+    return files
 
 
 def _sensitivities(
