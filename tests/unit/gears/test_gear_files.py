@@ -62,6 +62,13 @@ def test_one_relief_is_that_of_both_gears(tmp_path):
         ('["95 mm", 0.310]', "[95, 310]", "groove diameter 95000 mm must lie between"),
         ('["5 um", 0.0]', "[0, 5]", r"1.43e\+03 times .*write '5 um'"),
         ("[table]", "[mesh]\nbacklash = 180\n[table]", "write '180 um'"),
+        ("[table]", "[mesh]\nbacklash = 0.3\n[table]", "85.7 times .*in m: write '0.3 mm' if"),
+        (
+            "[table]",
+            "[mesh]\nbacklash = '300 mm'\n[table]",
+            r"backlash = 300 mm is 85.7 times the normal module of 3.5 mm; write '300 um' if",
+        ),
+        ("[table]", "[mesh]\nbacklash = '3e9 m'\n[table]", "of 3.5 mm; check its unit$"),
         ("[modif", "density = 7.85\n[modif", "between 500 and 25000 kg/m3; write '7.85 g/cm3' if"),
         ("[modif", "density = 7.85e-9\n[modif", "write '7.85e-09 t/mm3' if that is meant"),
         ("[modif", "youngs_modulus = 206\n[modif", r"1e\+12 Pa; write '206 GPa' if that is meant"),

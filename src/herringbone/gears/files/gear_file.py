@@ -106,7 +106,8 @@ def read_gear_file(file: str | Path) -> GearJob:
 
 def _job(content: Mapping[str, Any], values: Mapping[str, dict[str, Any]], folder: Path) -> GearJob:
     pair, relief = GearPair(**values["gear_pair"]), values["modification"]
-    check_proportions(pair, {**relief, **values["mesh"]})
+    written = {name: value for section in content.values() for name, value in section.items()}
+    check_proportions(pair, {**relief, **values["mesh"]}, written)
     if isinstance(amount := relief.get("tip_relief"), float):
         relief["tip_relief"] = (amount, amount)
     return GearJob(
