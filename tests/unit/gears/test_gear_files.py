@@ -59,6 +59,12 @@ def test_one_relief_is_that_of_both_gears(tmp_path):
     ("old", "new", "said"),
     [
         ("face_width = 0.0473", "face_width = 47.3", r"433 times .*write '47.3 mm'"),
+        (
+            "face_width = 0.0473",
+            "face_width = '90 um'",
+            "face_width = 90 um is 0.0257 times the normal module of 3.5 mm; write '90 mm' if",
+        ),
+        ("face_width = 0.0473", "face_width = 47.3e-6", "are in m: check its unit$"),
         ('["95 mm", 0.310]', "[95, 310]", "groove diameter 95000 mm must lie between"),
         ('["5 um", 0.0]', "[0, 5]", r"1.43e\+03 times .*write '5 um'"),
         ("[table]", "[mesh]\nbacklash = 180\n[table]", "write '180 um'"),

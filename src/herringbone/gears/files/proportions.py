@@ -16,6 +16,8 @@ _DIAMETERS = 30.0
 """Lengths along the shafts at most, in reference diameters."""
 _FLANK = {"tip_relief": 1.0, "helix_crowning": 1.0, "backlash": 1.0, "relief_length": 30.0}
 """Lengths at the flanks at most, in modules."""
+_NARROWEST = 0.1
+"""Face width at least, in modules."""
 _OFTEN = 0.25
 """Lengths at the flanks that may be meant, as a share of the largest."""
 
@@ -38,6 +40,10 @@ def check_proportions(
     """
     module = pair.normal_module
     beside = f"the normal module of {1e3 * module:g} mm"
+    if pair.face_width < _NARROWEST * module:
+        within = (module, _DIAMETERS * 2.0 * pair.reference_radius[0])
+        face = _Length("face_width", pair.face_width, written.get("face_width"))
+        raise _out_of_proportion(face, module, beside, within)
     for name in _AXIAL:
         for gear, length in enumerate(_lengths(name, getattr(pair, name), written)):
             diameter = 2.0 * pair.reference_radius[gear]
