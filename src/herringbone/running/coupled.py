@@ -105,7 +105,8 @@ def _coupled(
         if asked.record:
             system = with_recorded_channels(system, opened)
         way = way_of(system, scene, asked, exchanging, opened)
-        algorithm, step, lines = way.algorithm, way.step, [*asked.notes, *said, *way.lines]
+        algorithm, step = way.algorithm, way.step
+        lines = [*way.lacks, *asked.notes, *said, *way.lines]
         suit(opened, step)
         points = asked.all_points and not algorithm.adaptive
         grid = make_grid(scene.t_end, step, step if points else scene.record_step)

@@ -14,10 +14,11 @@ from herringbone.core.wording import option
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi, choose_algorithm, start_step
 from herringbone.cosim.cell.policy import policy
 from herringbone.cosim.layouts.inner_stepping import NO_INNER, InnerStepping
+from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
+from herringbone.cosim.structure.unfed import unfed
 from herringbone.result.budget import BudgetRow
 from herringbone.running.foreign.foreign_parts import understood
-from herringbone.running.foreign.interfaces import unfed
 from herringbone.running.foreign.linear_start import turned_back, under_load
 from herringbone.running.foreign.speeding_up import speeding_up
 from herringbone.running.foreign.started import inner_step, proposed_step
@@ -83,6 +84,7 @@ class Way(NamedTuple):
         step: macro step [s].
         wanted: macro step that was asked for, or follows from the records [s]; None: chosen.
         bond: highest frequency of all bonds together [rad/s]; None if it is not known.
+        lacks: lines on parts that are not connected, or in part; most others follow from them.
         lines: on what was chosen, and what is known of it.
     """
 
@@ -91,6 +93,7 @@ class Way(NamedTuple):
     step: float
     wanted: float | None
     bond: float | None
+    lacks: list[str]
     lines: list[str]
 
 
@@ -118,8 +121,8 @@ def way_of(
         trial = asked.step or (algorithm or LI()).start_step
         parts, found = understood(exchanging, opened, instances, trial)
         lines += found
-    if system.connections:
-        lines += unfed(exchanging, parts)
+    joined = bool(system.connections)
+    lacks = unfed(exchanging, build_network(exchanging, parts)) if joined else []
     if algorithm is None:
         algorithm, why = choose_algorithm(parts, wanted)
         lines.append(why)
@@ -133,7 +136,7 @@ def way_of(
     lines += _other_lengths(system, parts, step)
     if asked.warn:
         lines += _stability_notes(system, parts, algorithm, step, scene.t_end, asked)
-    return Way(parts, algorithm, step, wanted, bond, lines)
+    return Way(parts, algorithm, step, wanted, bond, lacks, lines)
 
 
 def _other_lengths(system: System, parts: Sequence[Part], step: float) -> Iterator[str]:

@@ -161,8 +161,13 @@ def _turns(system: Condensed, of_angle: np.ndarray) -> Iterator[Fraction]:
         ratio = float(abs(of_angle[argument]))
         whole = Fraction(ratio).limit_denominator(_FINEST)
         if not whole or abs(float(whole) - ratio) > _EXACT * ratio:
+            turns_so = (
+                f"it turns {ratio:.9g} times as fast as the reference shaft, no ratio of whole "
+                "numbers"
+                if ratio
+                else "it does not turn with the reference shaft"
+            )
             raise StructureError(
-                f"{twin.instances[p].name}: it turns {ratio:.9g} times as fast as the reference "
-                "shaft, no ratio of whole numbers, so that the motion does not repeat"
+                f"{twin.instances[p].name}: {turns_so}, so that the motion does not repeat"
             )
         yield turns / whole

@@ -20,6 +20,7 @@ from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.core.lean import Lean
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
+from herringbone.cosim.structure.unfed import unfed
 
 _MOST = 16
 """Selections of outputs that are kept."""
@@ -66,8 +67,11 @@ class Structure:
         self.core: Core = Core(system, known, same_tangents=same_tangents, lean=lean)
         condensed, twin = self.core.condensed, self.core.twin
         self.late = twin.settled
-        self.problem: Problem = self._problem()
-        every = turns_of(condensed, self.problem.of_angle)
+        try:
+            self.problem: Problem = self._problem()
+            every = turns_of(condensed, self.problem.of_angle)
+        except StructureError as error:
+            raise StructureError("; ".join((*unfed(system, twin.network), str(error)))) from None
         turns = common_period(every)
         self.bases = tuple(sorted({int(turns / each) for each in every}))
         self.turn = 2.0 * np.pi * float(turns)

@@ -56,6 +56,31 @@ def test_a_period_of_many_meshes_at_a_slow_speed_is_said_to_be_too_long():
     )
 
 
+@pytest.mark.parametrize(
+    ("forgotten", "lacks"),
+    [
+        (
+            '["gearbox.wheel", "thrust_coupling.flange_a"]',
+            "thrust_coupling: nothing is joined to flange_a, which stands still",
+        ),
+        ('["propeller.flange_b", "water.flange"]', "water: nothing is connected to it"),
+    ],
+)
+def test_a_forgotten_connection_is_named_first(tmp_path, forgotten, lacks):
+    """The water's torque has an order of blades, and its shaft no longer turns with the diesel."""
+    text = (PAIR.parent / "system.toml").read_text(encoding="utf-8")
+    assert forgotten in text
+    text = text.replace(f"  {forgotten},\n", "").replace("ship_pair.toml", PAIR.as_posix())
+    (tmp_path / "system.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(StructureError) as error:
+        hb.steady(tmp_path)
+    said = str(error.value)
+    assert said.startswith(lacks)
+    assert said.endswith(
+        "; water: it does not turn with the reference shaft, so that the motion does not repeat"
+    )
+
+
 def test_ripple_behind_a_freewheel_is_refused():
     """Its phase to the teeth is what it was before."""
     told = r"nothing holds booster\.angle at a phase to the rest, and torques depend on it"
