@@ -179,6 +179,7 @@ def test_loaded_pair(tmp_path, capsys):
         "Under 200 N m of the pinion, f_A 10 um, pinion axially held by 1e+08 N/m; left   right",
         "at 1200 r/min, class 5, K_A 1.25",
         "subcritical",
+        "place of this pressure on the path, from A",
     ):
         assert line in text
     assert main(["gear", str(THESIS), *options, "--json"]) == 0
@@ -195,6 +196,8 @@ def test_loaded_pair(tmp_path, capsys):
     assert f"{1e-6 * secant.mean():.1f}" in text
     assert loaded["dynamic_factor"]["specific_load"] == pytest.approx(1.25 * 38.75e3, rel=1e-4)
     maps = pd.read_csv(tmp_path / "flank_load.csv", comment="#")
+    said = (tmp_path / "flank_load.csv").read_text(encoding="utf-8").splitlines()[2]
+    assert said.startswith("# line_load, pressure: means over strips of the flank")
     for side, flank in zip(("left", "right"), loaded["flank_load"], strict=True):
         half = maps[maps["side"] == side]
         assert half["pressure"].max() == pytest.approx(flank["largest_pressure"], rel=0.02)

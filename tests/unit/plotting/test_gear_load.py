@@ -55,7 +55,8 @@ def test_single_half():
     loaded, axes = draw(SPUR, speed=200.0 * math.pi / 30.0)
     titles = [panel.get_title("left") for panel in axes]
     largest = 1e-6 * loaded.flanks[0].largest_pressure
-    assert titles[0] == f"Contact pressure, at most {largest:.0f} MPa"
+    assert titles[0] == f"Contact pressure, at most {largest:.0f} MPa at a point"
+    assert "MPa, means over strips of the flank" in {panel.get_ylabel() for panel in axes}
     assert len(loaded.flanks) == 1
     assert not any("left" in title for title in titles)
 

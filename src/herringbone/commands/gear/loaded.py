@@ -11,7 +11,7 @@ from herringbone.core.declaring.units import RAD_S
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.load.deviating_teeth import DeviatingLoad
 from herringbone.gears.load.figures import Loaded
-from herringbone.gears.load.flank_load import FlankLoad, axial_position
+from herringbone.gears.load.flank_load import MEANS, FlankLoad, axial_position
 
 
 def loaded_rows(loaded: Loaded) -> list[tuple[str, str]]:
@@ -42,7 +42,10 @@ def loaded_rows(loaded: Loaded) -> list[tuple[str, str]]:
             "largest contact pressure",
             f"{_sides([f.largest_pressure for f in flanks], 1e-6, 0)} MPa",
         ),
-        ("at this place on the path, from A", f"{_sides([f.where[0] for f in flanks], 1e3, 1)} mm"),
+        (
+            "place of this pressure on the path, from A",
+            f"{_sides([f.where[0] for f in flanks], 1e3, 1)} mm",
+        ),
         ("and on the face", f"{_sides([f.where[1] for f in flanks], 1e3, 1)} mm"),
         *_teeth_rows(loaded.teeth),
         *_factor_rows(loaded),
@@ -150,6 +153,7 @@ def flank_text(pair: GearPair, flanks: Sequence[FlankLoad]) -> str:
     lines = [
         "# units: path m, face m, axial m, line_load N/m, pressure Pa",
         "# path: from its start, the pinion's root; axial: from the middle, + to the left",
+        f"# line_load, pressure: {MEANS}; the largest of points: herringbone gear",
         "side,path,face,axial,line_load,pressure",
     ]
     for side, flank in enumerate(flanks):

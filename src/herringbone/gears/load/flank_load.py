@@ -25,6 +25,8 @@ from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stiffness.contact_slices import LineLoad
 
 _PATHS, _FACES = 49, 48
+MEANS = "means over strips of the flank"
+"""What the maps show."""
 _FEW = 0.4
 """Points of a strip, over the mean, that are only those of slices cut by the ends of the path."""
 
@@ -38,7 +40,7 @@ class LoadedLines(Protocol):
 
 @dataclass(frozen=True)
 class FlankLoad:
-    """Load on the flank of one half.
+    """Load on the flank of one half; the maps are means over strips, the largest values of points.
 
     Attributes:
         path: (m,) from the start of the path of contact, the root of the pinion's teeth [m].

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from herringbone.core.declaring.roles import SIDES
 from herringbone.gears.load.figures import Loaded
-from herringbone.gears.load.flank_load import axial_position
+from herringbone.gears.load.flank_load import MEANS, axial_position
 from herringbone.plotting.style import HALF_STYLE, ShownFigure, legend, legend_beside, styled
 
 _MM, _UM, _MPA, _N_UM = 1e3, 1e6, 1e-6, 1e-6
@@ -68,13 +68,13 @@ def _flanks(figure: SubFigure, loaded: Loaded) -> None:
         name = f" {SIDES[side]}" if len(loaded.flanks) == 2 else ""
         largest = _MPA * flank.largest_pressure
         axes.set(
-            title=f"Contact pressure{name}, at most {largest:.0f} MPa",
+            title=f"Contact pressure{name}, at most {largest:.0f} MPa at a point",
             xlabel="axial, from the middle of the pair [mm]",
             xlim=(axial.max(), axial.min()),
         )
         axes.grid(visible=False)
     panels[0].set_ylabel("path of contact, A to E [mm]")
-    figure.colorbar(map_, ax=panels, label="MPa", pad=0.01)
+    figure.colorbar(map_, ax=panels, label=f"MPa, {MEANS}", pad=0.01)
 
 
 def _transmission_error(axes: Axes, loaded: Loaded) -> None:
