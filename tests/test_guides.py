@@ -3,6 +3,7 @@
 import importlib.util
 import re
 import runpy
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -202,12 +203,18 @@ def test_plans(tmp_path):
     assert names["state"].converged
 
 
-def test_sweeps():
-    """The examples of a sweep, the second one on a cluster of threads."""
-    first, second = (blocks("sweeps", "python")[k] for k in (0, 1))
+def test_sweeps(tmp_path, monkeypatch, capsys):
+    """The examples: over speeds, over files of the same pair, and on a cluster of threads."""
+    first, files, second = (blocks("sweeps", "python")[k] for k in (0, 1, 2))
     names: dict = {}
     exec(compile(first, "sweeps.md", "exec"), names)
     assert names["found"].table["outcome"].tolist() == ["steady"] * 3
+    monkeypatch.chdir(tmp_path)
+    for name in ("m24.toml", "m28.toml"):
+        shutil.copy(ROOT / "fmus" / "gear_mesh" / "gear_pair.toml", name)
+    exec(compile(files, "sweeps.md", "exec"), names)
+    one, other = (line.split() for line in capsys.readouterr().out.splitlines())
+    assert (one[0], other[0], one[1]) == ("m24.toml", "m28.toml", other[1])
     distributed = pytest.importorskip("distributed", reason="the extra cluster is not installed")
     exec(compile(second, "sweeps.md", "exec"), names)
     with distributed.LocalCluster(

@@ -262,13 +262,18 @@ def files_of_parts(options: argparse.Namespace) -> PartFiles:
     """What --gear and --housing give.
 
     Raises:
-        ParameterError: two for the same part.
+        ParameterError: two for the same part, or a list of files.
     """
     found = PartFiles(gear={}, housing={})
     for name, files in (("gear", found["gear"]), ("housing", found["housing"])):
         for item in getattr(options, name):
             path, equals, file = item.partition("=")
             path, file = (path, file) if equals and not Path(item).exists() else ("", item)
+            if "," in file and not Path(file).exists():
+                raise ParameterError(
+                    f"--{name} {item}: it takes one file; for a study over several call "
+                    f"hb.steady(SYSTEM, {name}=FILE) in a loop, in Python"
+                )
             if path in files:
                 where = f"for '{path}'" if path else "without a path"
                 raise ParameterError(

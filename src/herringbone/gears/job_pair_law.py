@@ -35,9 +35,9 @@ def pair_law_for(job: GearJob) -> PairLaw:
     chosen = METHODS[name]
 
     def make() -> Arrays:
-        note = "; ".join(filter(None, (chosen.takes, "once for each pair")))
+        what = f"making the force law of a pair of teeth by {chosen.title}"
         with (
-            activity(f"making the force law of a pair of teeth by {chosen.title}", note),
+            activity(what, "once for each pair", takes=chosen.takes),
             one_blas_thread(),
         ):
             mesh = chosen.mesh(task, silent)

@@ -69,8 +69,8 @@ def stiffness_for(
                 "the method 'fe' takes the extra of that name, which is missing: pip install "
                 "'herringbone[fe]', or take the method 'auto', which does without"
             )
-        note = "; ".join(filter(None, (chosen.takes, "once for each pair and load")))
-        with activity(f"making the stiffness table by {chosen.title}", note):
+        what = f"making the stiffness table by {chosen.title}"
+        with activity(what, "once for each pair and load", takes=chosen.takes):
             found = mesh_stiffness(task, name, progress)
         return {
             "method": np.array(found.method),

@@ -37,6 +37,11 @@ def test_a_table_in_the_units_that_were_asked_for(tmp_path, capsys):
     [
         (["sweep", "e_axle", "--speed", "1000"], "no part of e_axle declares a speed set point"),
         (["sweep", "gearbox"], "at least one parameter"),
+        (
+            ["sweep", "gearbox", "--gear", "m24.toml,m28.toml"],
+            "--gear m24.toml,m28.toml: it takes one file; for a study over several call "
+            "hb.steady(SYSTEM, gear=FILE) in a loop, in Python",
+        ),
         ([*GEARBOX, "--known-within", "1.1"], "--known-within 1.1: of the parameters of --sens"),
         ([*GEARBOX, "--sensitivities", "--known-within", "0.9"], "it is a factor, at least 1"),
         (["sweep", "gearbox", "--speed", "1:2"], "START:STOP:COUNT"),

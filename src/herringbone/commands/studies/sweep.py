@@ -102,13 +102,13 @@ def run(options: argparse.Namespace) -> int:
     check_writable(folder)
     spread = spread_of(options)
     fixed, points = _points(options)
+    files = files_of_parts(options)
     if options.study is None:
         study = replace(grid(points), speed_unit=PER_MINUTE)
     elif points:
         raise ParameterError(f"--study has its points; drop {', '.join(points)}")
     else:
         study = read_study_file(options.study)
-    files = files_of_parts(options)
     replaced = replacements(options)
     evaluator = _evaluator(options, Wishes(housing=files["housing"], replace_parts=replaced))
     tqdm.monitor_interval = 0  # a thread, and what has threads is not forked

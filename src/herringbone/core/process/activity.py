@@ -135,8 +135,8 @@ COMPILING = Pieces("compiling kernels", "only the first time, and when their cod
 class _Activity:
     """One thing that is going on."""
 
-    def __init__(self, what: str, note: str, around: "_Activity | None") -> None:
-        self._what, self._note, self._around = what, note, around
+    def __init__(self, what: str, note: str, takes: str, around: "_Activity | None") -> None:
+        self._what, self._note, self._takes, self._around = what, note, takes, around
         self._usual = _durations().get(what)
         self._started, self._compiled = monotonic(), COMPILING.spent()
         self._said = False
@@ -157,7 +157,7 @@ class _Activity:
             return rest
         if not self.told():
             self._said = True
-            usual = f"usually {self._usual:.0f} s" if self._usual else "this may take a while"
+            usual = f"usually {self._usual:.0f} s" if self._usual else self._takes
             _LOG.info("%s ... (%s%s)", self._what, usual, f"; {self._note}" if self._note else "")
         return None
 
@@ -167,7 +167,9 @@ class _Activity:
 
 
 @contextmanager
-def activity(what: str, note: str = "", *, shown: bool = False) -> Iterator[None]:
+def activity(
+    what: str, note: str = "", *, takes: str = "this may take a while", shown: bool = False
+) -> Iterator[None]:
     """Do something that may take more than two seconds; if so, a line says it.
 
     The line comes at once if it took long the last time. What is inside of something that has been
@@ -176,13 +178,14 @@ def activity(what: str, note: str = "", *, shown: bool = False) -> Iterator[None
     Args:
         what: such as "building the FMU of NAME"; its duration is remembered by it.
         note: how often it is done, such as "once".
+        takes: how long, where that is not remembered.
         shown: something else shows that it goes on, and nothing is said.
     """
     if shown:
         yield
         return
     around = getattr(_open, "activity", None)
-    this = _Activity(what, note, around)
+    this = _Activity(what, note, takes, around)
     _open.activity = this
     try:
         yield

@@ -109,14 +109,14 @@ class Method:
         mesh: what makes its mesh.
         accuracy: of its tables; of plain slices: of what they are measured by, coupled slices.
         calibrated: it takes a calibration.
-        takes: how long, for people, if it takes long.
+        takes: how long, for people.
     """
 
     title: str
     mesh: Callable[[Task, Progress], SliceMesh | PointMesh]
     accuracy: Accuracy
     calibrated: bool = True
-    takes: str = ""
+    takes: str = "this may take a while"
 
 
 _COUPLED = Accuracy(mean=0.04, share=0.15, floor=0.0003)

@@ -52,6 +52,14 @@ def test_what_is_short_says_and_remembers_nothing(capsys, monkeypatch, impatient
     assert not impatient.exists()
 
 
+def test_how_long_is_told_once(capsys, impatient):
+    """What is known here holds, in place of what is said of other machines."""
+    for usual, said in ({}, "a minute elsewhere"), ({"digging": 93.0}, "usually 93 s"):
+        keep(impatient, usual)
+        with activity("digging", "once", takes="a minute elsewhere"):
+            assert wait_for_line(capsys) == f"digging ... ({said}; once)\n"
+
+
 def test_what_took_long_says_so_at_once_and_how_long(capsys, monkeypatch, impatient):
     monkeypatch.setattr(module, "_PATIENCE", 30.0)
     keep(impatient, {"digging a hole": 71.8})
