@@ -159,7 +159,7 @@ def test_command(tmp_path, capsys):
     text = capsys.readouterr().out
     assert "up to 1000 Hz" in text
     assert {f.name for f in (tmp_path / "out").iterdir()} == {
-        "modes.csv", "campbell.png", "shapes.png"
+        "modes.csv", "critical_speeds.csv", "campbell.png", "shapes.png"
     }  # fmt: skip
     assert main(["modes", "test_rig", "--shapes", "3"]) == 2
 

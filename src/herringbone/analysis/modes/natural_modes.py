@@ -22,6 +22,8 @@ from scipy.linalg import eig, matrix_balance
 from scipy.sparse.csgraph import connected_components
 
 from herringbone.analysis.anatomy import anatomy, orders_told, value_at
+from herringbone.analysis.modes.critical_speeds import ORDERS, critical_speeds, mesh_crossings
+from herringbone.analysis.modes.excitations import Excitations, excitations
 from herringbone.analysis.modes.linearised import Linearised, linearised, seen_row
 from herringbone.analysis.modes.mesh_answer import mesh_answer, undamped
 from herringbone.core import ParameterError
@@ -46,6 +48,7 @@ class NaturalModes(Facts):
         mesh_answer: (n, 2) see there: in phase, in the worst phases; 0 without gear pair, inf
             without damping.
         mesh_weight: (n,) finite, what orders modes by their answer, see there.
+        excited: orders of other parts than gear pairs, and the shaft that they are told by.
         others: how many eigenvalues do not oscillate; without those of places that a part keeps
             for more data than it has, as a housing does for modes.
         notes: lines that the user should read.
@@ -57,6 +60,7 @@ class NaturalModes(Facts):
     participation: pd.DataFrame
     mesh_answer: np.ndarray
     mesh_weight: np.ndarray
+    excited: Excitations
     others: int
     notes: tuple[str, ...] = ()
 
@@ -122,20 +126,28 @@ class NaturalModes(Facts):
             "speed" [r/min], "order", "mode" from 1, "frequency" [Hz], "mesh_answer"; the largest
             answers first, see `mesh_weight`. Empty without a gear pair.
         """
-        names = ["speed", "order", "mode", "frequency", "mesh_answer"]
-        teeth = self.teeth
-        if teeth is None:
-            return pd.DataFrame(columns=names, dtype=float)
-        rows = [
-            (60.0 * f / (order * teeth), order, k + 1, f, self.mesh_answer[k, 0])
-            for order in orders
-            for k, f in enumerate(self.frequency_hz)
-            if 60.0 * f / (order * teeth) <= highest_speed
-        ]
-        found = pd.DataFrame(rows, columns=names, dtype=float)
-        found[["order", "mode"]] = found[["order", "mode"]].astype(int)
-        first = np.argsort(-self.mesh_weight[found["mode"] - 1], kind="stable")
-        return found.iloc[first].reset_index(drop=True)
+        return mesh_crossings(self, orders, highest_speed)
+
+    def critical_speeds(
+        self, highest_speed: float, highest: float, orders: Sequence[int] = ORDERS
+    ) -> pd.DataFrame:
+        """Speeds of the reference shaft at which orders of parts and of the mesh meet modes.
+
+        That shaft and its present speed are those of `excited`; frequencies are those at the
+        present speed.
+
+        Args:
+            highest_speed: [r/min].
+            highest: frequency up to which modes count [Hz].
+            orders: of the mesh.
+
+        Returns:
+            "excitation" for people, "part", "order" in periods per turn of the part's own shaft (of
+            a gear pair its pinion), "mode" from 1, "frequency" [Hz], "speed" and "from_present",
+            that less the present one [r/min], "answer" of the mode to the part, over that of the
+            mode that answers most; nearest to the present speed first.
+        """
+        return critical_speeds(self, highest_speed, highest, orders)
 
     @property
     def teeth(self) -> float | None:
@@ -192,13 +204,14 @@ def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
         if firsts[p + 1] > firsts[p]
     })  # fmt: skip
     heard = mesh_answer(found, rates, left, right)
+    excited = excitations(found, rates, left, right)
     orders = orders_told(system)
     first = (
         (f"{orders}, over the speed of its pinion; other pairs have their own",) if orders else ()
     )
-    told = (*notes, *found.notes, *heard.notes, *first)
+    told = (*notes, *found.notes, *heard.notes, *excited.notes, *first)
     return NaturalModes(
-        found, rates, right, participation, heard.answer, heard.weight, others, tuple(told)
+        found, rates, right, participation, heard.answer, heard.weight, excited, others, told
     )
 
 

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,14 +16,19 @@ from herringbone.commands.output import check_writable, say, show, written_into
 from herringbone.core import ParameterError
 from herringbone.core.frequencies import HIGHEST, check_end
 from herringbone.core.places.files import write_whole
+from herringbone.core.wording import option
 
 if TYPE_CHECKING:
     from herringbone.analysis.modes.natural_modes import NaturalModes
 
-FILES = "modes.csv", "campbell.png", "shapes.png"
+FILES = "modes.csv", "critical_speeds.csv", "campbell.png", "shapes.png"
 _HIGHEST_SPEED = 3000.0
 _SHARES = 3
 _LEAST_SHARE = 0.01
+_NEAREST = 6
+"""Critical speeds that are told, of parts and of the mesh."""
+_PAST, _ROUND = 1.1, 500.0
+"""End of critical speeds that is told, over the present speed; it is a multiple [r/min]."""
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -37,7 +43,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     )
     sub.add_argument(
         "--speed", type=float, default=_HIGHEST_SPEED,
-        help="end of the Campbell diagram in r/min; %(default)g if not given",
+        help="end of Campbell diagram and critical speeds in r/min; %(default)g if not given",
     )  # fmt: skip
     sub.add_argument(
         "--shapes", type=int, nargs="+", default=[], metavar="MODE",
@@ -79,7 +85,8 @@ def run(options: argparse.Namespace) -> int:
         show(json.dumps(records_of(found.table)))
     else:
         tail = ["", f"Files: {', '.join(map(str, written))}"] if written else []
-        show("\n".join([*lines(found, options.highest), *tail]))
+        speeds = critical_lines(found, options.speed, options.highest)
+        show("\n".join([*lines(found, options.highest), *speeds, *tail]))
     return 0
 
 
@@ -93,12 +100,14 @@ def _write(found: "NaturalModes", options: argparse.Namespace) -> list[Path]:
 
     check_numbers(found, [*options.shapes, *options.animate])  # before files are written anew
     folder: Path = options.output
-    table, diagram, shapes = (folder / name for name in FILES)
+    table, critical, diagram, shapes = (folder / name for name in FILES)
     gifs = {mode: folder / f"mode_{mode}.gif" for mode in options.animate}
     with written_into(folder):
         write_whole(table, found.table.to_csv(index=False))
+        speeds = found.critical_speeds(options.speed, options.highest)
+        write_whole(critical, speeds.to_csv(index=False))
         campbell(found, highest=options.highest, speed=options.speed).savefig(diagram)
-        written = [table, diagram]
+        written = [table, critical, diagram]
         try:
             mode_shapes(found, options.shapes).savefig(shapes)
         except ParameterError as error:  # a system without gears and housing
@@ -125,3 +134,31 @@ def lines(found: "NaturalModes", highest: float) -> Iterator[str]:
         told = ", ".join(f"{n} {100 * s:.0f} %" for n, s in shares.items() if s >= _LEAST_SHARE)
         yield (f"{k + 1:>5}{found.frequency_hz[k]:>10.2f} Hz{100 * found.damping_ratio[k]:>8.2f} %"
                f"{found.mesh_answer[k, 0]:>21.3g}  {told}")  # fmt: skip
+
+
+def critical_lines(found: "NaturalModes", speed: float, highest: float) -> Iterator[str]:
+    """Speeds up to one [r/min] at which orders meet modes up to a frequency [Hz], for people."""
+    from herringbone.analysis.modes.critical_speeds import LEAST  # noqa: PLC0415 (pandas: lazy)
+
+    table = found.critical_speeds(speed, highest)
+    if table.empty:
+        return
+    heard = table[table["answer"] >= LEAST]
+    of_parts = heard["part"].isin([one.part for one in found.excited.orders])
+    reference = found.excited.reference
+    yield ""
+    yield (f"critical speeds of the {reference}, nearest to its present {found.excited.speed:.4g} "
+           f"r/min first, up to {speed:g} r/min")  # fmt: skip
+    yield (f"{len(table) - len(heard)} are left out, as their modes hardly answer; frequencies are "
+           "those at the present speed and load")  # fmt: skip
+    if (present := found.excited.speed) > speed:
+        past = _ROUND * math.ceil(_PAST * present / _ROUND)
+        yield f"the present speed lies beyond that; {option('speed', past)} goes past it"
+    yield ""
+    yield f"{'order':>20}{'mode':>6}{'frequency':>13}{'speed':>15}{'from present':>17}"
+    for own in (heard[of_parts], heard[~of_parts]):
+        for row in own[:_NEAREST].itertuples():
+            yield (f"{row.excitation:>20}{row.mode:>6}{row.frequency:>10.2f} Hz{row.speed:>9.1f} "
+                   f"r/min{row.from_present:>+11.1f} r/min")  # fmt: skip
+        if len(own) > _NEAREST:
+            yield f"{'':>20}  and {len(own) - _NEAREST} more"

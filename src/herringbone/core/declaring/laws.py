@@ -76,7 +76,8 @@ class Laws:
         clock: place in the block of the time [s] of what is evaluated, if the laws depend on it.
         refusal: why a block's equations cannot be taken apart; empty if they can.
         periods: arguments that are angles, and the turn after which the values repeat, in whole
-            turns of 2 pi; none: the laws depend on no angle. Of a prepared, settled block.
+            turns of 2 pi, one for each order with which they excite; none: the laws depend on no
+            angle. Of a prepared, settled block.
         settle: ends in a block what comes in over a time or an angle, as ramps do.
         ramp: brings in over so many turns, after `settle`, what comes in over an angle; inf: never.
         keep_harmonics: keeps, in a block, so many harmonics of the tables that the values are taken
