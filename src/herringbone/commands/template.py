@@ -20,11 +20,13 @@ class Template(NamedTuple):
         file: the shipped one.
         use: what it is for, in a line.
         more: what is shown, of the file's text.
+        named: what the file is called in a folder of its own; empty if it needs none.
     """
 
     file: Callable[[], Path]
     use: str
     more: Callable[[str], str] = str
+    named: str = ""
 
 
 def _of(role: Role, name: str) -> Callable[[], Path]:
@@ -62,6 +64,7 @@ TEMPLATES = {
     "system": Template(
         lambda: systems_folder() / "gearbox" / "system.toml",
         "A system: FOLDER/system.toml, its scenes in FOLDER/scenes; herringbone run FOLDER",
+        named="system.toml",
     ),
     "scene": Template(
         lambda: systems_folder() / "gearbox" / "scenes" / "loaded.toml",
@@ -81,7 +84,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "-o",
         "--output",
         type=Path,
-        help="file to write, of a system FOLDER/system.toml; shown if not given",
+        help="file to write, of a system FOLDER or FOLDER/system.toml; shown if not given",
     )
 
 
@@ -100,6 +103,8 @@ def template(kind: str, output: Path | None) -> str:
         return text.rstrip("\n")
     if output.exists():
         raise ParameterError(f"{output} is there already; give another name with -o")
+    if found.named and not output.suffix:
+        output /= found.named
     check_writable(output.parent, output)
     try:
         output.parent.mkdir(parents=True, exist_ok=True)

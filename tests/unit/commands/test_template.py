@@ -71,6 +71,18 @@ def test_system_and_scene(written, tmp_path):
     assert by_file.data.equals(hb.run("gearbox", **RUN).data)
 
 
+def test_a_name_without_a_suffix_is_the_folder_of_a_system(tmp_path, capsys):
+    """Which is written if nothing of that name is there; files of other kinds need no suffix."""
+    folder, plain = tmp_path / "mine", tmp_path / "pair"
+    assert main(["template", "system", "-o", str(folder)]) == 0
+    assert capsys.readouterr().out.startswith(f"{folder / 'system.toml'}: ")
+    assert read_system(folder).parts == read_system("gearbox").parts
+    assert main(["template", "system", "-o", str(folder)]) == 2
+    assert f"{folder} is there already" in capsys.readouterr().err
+    assert main(["template", "gear", "-o", str(plain)]) == 0
+    assert plain.is_file()
+
+
 @pytest.mark.parametrize("kind", TEMPLATES)
 def test_shown(kind, capsys):
     assert main(["template", kind]) == 0

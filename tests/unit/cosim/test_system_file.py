@@ -56,6 +56,16 @@ def test_folder_without_system_file(tmp_path):
     refused(f"there is no system '{tmp_path}': give one of", tmp_path)
 
 
+def test_a_gear_file_in_place_of_a_system(tmp_path):
+    """What is no TOML, or has no gears, is no gear file."""
+    file = tmp_path / "pair.toml"
+    for text in ("[gear_pair", "[parts]\n"):
+        file.write_text(text, encoding="utf-8")
+        refused(f"there is no system '{file}': give one of", file)
+    file.write_text("[gear_pair]\nnumber_of_teeth = [31, 124]\n", encoding="utf-8")
+    refused(f"{file} is a gear file: herringbone run SYSTEM --gear {file}", file)
+
+
 def test_not_toml(tmp_path):
     said = refused("cannot read", write(tmp_path, "parts = ["))
     assert "system.toml" in said

@@ -44,6 +44,8 @@ _KEYS: dict[str, type] = {
 _TYPE_NAMES: dict[type, str] = {str: "a text", list: "a list", dict: "a table"}
 _KINDS = ("component", "fmu", "system")
 _FILES = ("gear", "housing")
+_OF_GEARS = "gear_pair"
+"""Section that every gear file has, see `gears.files.gear_file`."""
 
 
 VALUE_HINT = 'it takes a number or a text; quote a name that has dots: "a.b" = 1.0'
@@ -69,7 +71,7 @@ def find_system(reference: str | Path, outer: Path | None = None) -> Path:
         outer: folder of the system that names it: paths start there, not in the working folder.
 
     Raises:
-        StructureError: there is no such system.
+        StructureError: there is no such system, or it is a gear file.
     """
     path = Path(reference)
     own = path.parent if path.name == FILE_NAME else path
@@ -78,6 +80,7 @@ def find_system(reference: str | Path, outer: Path | None = None) -> Path:
     for folder in (first, shipped) if outer or _is_path(reference) else (shipped, own):
         if is_file(folder / FILE_NAME):
             return folder
+    _refuse_gear_file((outer or Path()) / path)
     known = sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}"))
     named_in = f"{outer / FILE_NAME}: " if outer else ""
     raise StructureError(
@@ -85,6 +88,16 @@ def find_system(reference: str | Path, outer: Path | None = None) -> Path:
         f"{meant(str(reference), known)}give one of {', '.join(known)}, "
         f"a folder with {FILE_NAME}, or an .ssp file"
     )
+
+
+def _refuse_gear_file(file: Path) -> None:
+    """Raises StructureError if it is one; what cannot be read is none."""
+    try:
+        content = read_toml(file, StructureError) if is_file(file) else {}
+    except StructureError:
+        return
+    if _OF_GEARS in content:
+        raise StructureError(f"{file} is a gear file: herringbone run SYSTEM --gear {file}")
 
 
 def _is_path(reference: str | Path) -> bool:
