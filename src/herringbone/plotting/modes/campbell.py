@@ -9,7 +9,7 @@ from herringbone.analysis.anatomy import orders_told
 from herringbone.analysis.modes.critical_speeds import LEAST, ORDERS
 from herringbone.analysis.modes.natural_modes import NaturalModes
 from herringbone.core.frequencies import HIGHEST, check_end
-from herringbone.plotting.modes.rays import BEHIND, PART_COLOUR, Ray, draw_rays, rays_of
+from herringbone.plotting.modes.rays import BEHIND, PART_COLOUR, Ray, draw_rays, inches, rays_of
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, new_figure, styled
 
 HIGHEST_SPEED = 3000.0
@@ -148,7 +148,7 @@ def _labels(found: NaturalModes, axes: Axes, low: bool) -> None:
     top = axes.get_ylim()[1]
     shown = np.flatnonzero(found.frequency_hz <= top).tolist()
     told = shown[:_TOLD] if low else found.largest(_TOLD, top)
-    apart = _APART / (axes.get_position().height * axes.figure.get_figheight())
+    apart = _APART / inches(axes)[1]
     places: list[float] = []
     for k in reversed(told):  # from above, so that none leaves the panel
         below = places[-1] - apart if places else 1.0

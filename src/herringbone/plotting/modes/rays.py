@@ -67,8 +67,7 @@ def draw_rays(axes: Axes, rays: Sequence[Ray]) -> None:
 def _label(axes: Axes, rays: Sequence[Ray]) -> None:
     """Above the panel, other parts over the mesh; at its right edge, inside."""
     right, top = axes.get_xlim()[1], axes.get_ylim()[1]
-    place, figure = axes.get_position(), axes.figure
-    width, height = figure.get_size_inches() * (place.width, place.height)
+    width, height = inches(axes)
     for row, of_parts in zip(_ROWS, (False, True), strict=True):
         above = [Label(top / r.slope / right, (r,)) for r in rays
                  if bool(r.part) is of_parts and r.slope * right > top]  # fmt: skip
@@ -77,6 +76,12 @@ def _label(axes: Axes, rays: Sequence[Ray]) -> None:
     beside = [Label(r.slope * right / top, (r,)) for r in rays if r.slope * right <= top]
     for label in merged(beside, lambda one: _LINE / height):
         _write(axes, (0.995, label.at), label, "right")
+
+
+def inches(axes: Axes) -> tuple[float, float]:
+    """Width and height of a panel [inch]."""
+    box, dpi = axes.get_window_extent(), axes.figure.dpi
+    return box.width / dpi, box.height / dpi
 
 
 def _write(axes: Axes, place: tuple[float, float], label: Label, side: str) -> None:
