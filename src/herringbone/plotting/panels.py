@@ -9,6 +9,7 @@ from matplotlib.ticker import SymmetricalLogLocator
 from matplotlib.transforms import blended_transform_factory
 
 from herringbone.analysis.asked import mesh_forces
+from herringbone.analysis.figures.folds import folds
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.spectra import (
     FEWEST_SAMPLES,
@@ -17,6 +18,7 @@ from herringbone.analysis.figures.spectra import (
     mesh_orders,
 )
 from herringbone.core.frequencies import HIGHEST
+from herringbone.plotting.folds import mark_folds
 from herringbone.plotting.style import COLOURS, HALF_STYLE, MARKER_COLOUR, depths, draw_line
 from herringbone.result.result import TIME, Result
 
@@ -206,7 +208,10 @@ def spectrum_panel(
     if not part.steady:
         axes.text(1.0, 1.0, "speed not steady: no mesh orders", ha="right", va="bottom",
                   transform=axes.transAxes, fontsize=8, color=MARKER_COLOUR)  # fmt: skip
-    mark_orders(axes, run_mesh_frequency(result), highest)
+    mesh = run_mesh_frequency(result)
+    mark_orders(axes, mesh, highest)
+    if mesh:
+        mark_folds(axes, folds(spectrum, mesh, highest), recorded)
 
 
 def _coinciding(names: Sequence[str], amplitude: np.ndarray) -> list[str]:

@@ -3,10 +3,16 @@
 import math
 from collections.abc import Iterator
 
+from herringbone.analysis.asked import mesh_forces
+from herringbone.analysis.figures.folds import folds, hidden
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, PADDING, amplitude_spectrum
+from herringbone.core.frequencies import HIGHEST
 from herringbone.core.wording import option
 from herringbone.result.result import Result
 
+_FINER = 0.4
+"""Record step that is told against lines of high harmonics, over the present one."""
 _HARMONICS, _WANTED = 3, 8
 """Mesh harmonics that records should show, and those that the step shows that is told."""
 
@@ -28,7 +34,10 @@ def of_records(result: Result, gear: str) -> Iterator[str]:
     """A line on the harmonics of a gear pair that show at other frequencies."""
     first = folded_from(result, gear)
     frequency, step = run_mesh_frequency(result, gear=gear), steady_part(result).sample_step
-    if first is None or frequency is None:
+    if frequency is None:
+        return
+    if first is None:
+        yield from _of_high_orders(result, gear, frequency)
         return
     needed = 0.5 / _WANTED / frequency
     digit = 10.0 ** math.floor(math.log10(needed))
@@ -37,4 +46,30 @@ def of_records(result: Result, gear: str) -> Iterator[str]:
         f"{gear} from {first} on, {first * frequency:.4g} Hz, show folded below, in lines, spectra "
         f"and radiated power; {option('record_step', math.floor(needed / digit) * digit)} shows "
         f"the first {_WANTED}"
+    )
+
+
+def _of_high_orders(result: Result, gear: str, frequency: float) -> Iterator[str]:
+    """A line on higher harmonics of the mesh forces that are seen folded; others have less."""
+    columns, part = list(mesh_forces(result, gear).values()), steady_part(result)
+    if not columns or part.rows.stop - part.rows.start < FEWEST_SAMPLES:
+        return
+    signals = result.data[columns].to_numpy()[part.rows]
+    spectrum = amplitude_spectrum(signals, part.sample_step, PADDING)
+    if found := folds(spectrum, frequency, HIGHEST):
+        orders = " and ".join(map(str, found[0].orders[:2]))
+        where = (
+            f"in spectra, the largest is {orders} at {found[0].frequency:.0f} Hz, "
+            f"{found[0].amplitude:.3g} N of mesh force"
+        )
+    elif least := hidden(spectrum, frequency, HIGHEST):
+        where = (
+            f"at lower ones, as large as the last recorded, {least:.3g} N of mesh force, or less"
+        )
+    else:
+        return
+    yield (
+        f"records every {part.sample_step:.4g} s tell frequencies up to "
+        f"{0.5 / part.sample_step:.4g} Hz: higher mesh harmonics of {gear} show folded {where}; "
+        f"{option('record_step', _FINER * part.sample_step)} makes that less"
     )
