@@ -60,7 +60,9 @@ def _interval_stepper(
             if can_leap:
                 reached = leap(b, w, t, h, done, end, tolerance, degree)
                 w[known] = 0.0  # its laws were called elsewhere
-            done = min(end, reached + shortest) if tolerance < np.inf else end
+            done = reached + shortest
+            if end - done < shortest * SAME or tolerance == np.inf:  # rounding makes no step
+                done = end
             if reached < done:
                 forget(b, w)
                 # room for a leap: a law bends, and may do so twice between the ends of a long step
