@@ -101,10 +101,10 @@ def template(kind: str, output: Path | None) -> str:
     text = f"# {found.use}\n#\n{found.more(found.file().read_text(encoding='utf-8'))}"
     if output is None:
         return text.rstrip("\n")
+    if found.named and (output.is_dir() or output.suffix != Path(found.named).suffix):
+        output /= found.named
     if output.exists():
         raise ParameterError(f"{output} is there already; give another name with -o")
-    if found.named and not output.suffix:
-        output /= found.named
     check_writable(output.parent, output)
     try:
         output.parent.mkdir(parents=True, exist_ok=True)

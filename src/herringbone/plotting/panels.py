@@ -9,7 +9,7 @@ from matplotlib.ticker import SymmetricalLogLocator
 from matplotlib.transforms import blended_transform_factory
 
 from herringbone.analysis.asked import mesh_forces
-from herringbone.analysis.figures.folds import folds
+from herringbone.analysis.figures.folds import folds, turns_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.spectra import (
     FEWEST_SAMPLES,
@@ -211,7 +211,7 @@ def spectrum_panel(
     mesh = run_mesh_frequency(result)
     mark_orders(axes, mesh, highest)
     if mesh:
-        mark_folds(axes, folds(spectrum, mesh, highest), recorded)
+        mark_folds(axes, folds(spectrum, mesh, highest, turns_of(result, mesh)), recorded)
 
 
 def _coinciding(names: Sequence[str], amplitude: np.ndarray) -> list[str]:

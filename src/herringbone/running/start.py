@@ -132,7 +132,8 @@ def _settled(system: System, step: float, wanted: Wanted) -> tuple[System, tuple
             f"{'' if found.declared else _unset(system, fastest)}"
         )
     if found.moved:
-        what = f"given: {found.given:.6g} rad/s" if found.given else "nothing sets it"
+        unset = not found.given and _unset(system, fastest)
+        what = "nothing sets it" if unset else f"given: {found.given:.6g} rad/s"
         lines.append(
             f"{fastest} starts at {found.values[fastest]:.6g} rad/s, where torques balance "
             f"({what}); {option('start', Start.REST.value)} takes what is given"

@@ -1,6 +1,7 @@
 """Critical speeds: where orders of parts and of the mesh meet modes, in figures and pictures."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -11,7 +12,7 @@ from herringbone.analysis.modes.critical_speeds import mesh_label
 from herringbone.commands.main import main
 from herringbone.commands.studies.modes import critical_lines
 from herringbone.plotting.modes.campbell import campbell
-from herringbone.plotting.modes.rays import Label, Ray, merged
+from herringbone.plotting.modes.rays import Label, Ray, merged, rays_of
 
 ROTORS = "one", "two", "three"
 INERTIA, STIFFNESS = 0.5, 6e4
@@ -52,6 +53,16 @@ def chain(folder, joined=(), more=""):
 @pytest.fixture(scope="module")
 def ship():
     return hb.modes("ship")
+
+
+@pytest.mark.parametrize(("reference", "rays"), [("", 6), ("engine", 0)])
+def test_mesh_orders_are_told_of_a_turning_pinion_alone(ship, reference, rays):
+    """Their speeds are the pinion's, and not those of another shaft, or of none."""
+    excited = ship.excited._replace(reference=reference, orders=())
+    other = replace(ship, excited=excited)
+    assert other.critical_speeds(3000.0, 3000.0).empty
+    assert not list(critical_lines(other, 3000.0, 3000.0))
+    assert len(rays_of(other, range(1, 7))) == rays
 
 
 def test_an_engine_on_three_rotors(tmp_path):

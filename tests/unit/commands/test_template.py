@@ -78,9 +78,13 @@ def test_a_name_without_a_suffix_is_the_folder_of_a_system(tmp_path, capsys):
     assert capsys.readouterr().out.startswith(f"{folder / 'system.toml'}: ")
     assert read_system(folder).parts == read_system("gearbox").parts
     assert main(["template", "system", "-o", str(folder)]) == 2
-    assert f"{folder} is there already" in capsys.readouterr().err
+    assert f"{folder / 'system.toml'} is there already" in capsys.readouterr().err
     assert main(["template", "gear", "-o", str(plain)]) == 0
     assert plain.is_file()
+    (empty := tmp_path / "empty").mkdir()
+    for other in (empty, tmp_path / "plant.v2"):
+        assert main(["template", "system", "-o", str(other)]) == 0
+        assert (other / "system.toml").is_file()
 
 
 @pytest.mark.parametrize("kind", TEMPLATES)

@@ -163,7 +163,7 @@ def _within(side: Sides, begin: float, end: float) -> Sides:
     """The part of a run that is compared: levels and orders of both are over the same time [s]."""
     data = side.result.data
     rows = (data[TIME] >= begin - _SAME * end) & (data[TIME] <= end * (1.0 + _SAME))
-    result = replace(side.result, data=data[rows].reset_index(drop=True))
+    result = replace(side.result, data=data[rows].reset_index(drop=True), before=None)
     return side._replace(result=result, part=steady_part(result))
 
 

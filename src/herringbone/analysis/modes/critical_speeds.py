@@ -48,7 +48,7 @@ def critical_speeds(
         for one in found.excited.orders
         for k, f in enumerate(found.frequency_hz)
     ]
-    if (teeth := found.teeth) is not None:
+    if found.excited.reference and (teeth := found.teeth_of_reference) is not None:
         pair = anatomy(found.system).with_role(Role.GEAR_PAIR)[0]
         strongest = float(found.mesh_weight.max(initial=0.0)) or 1.0
         rows += [

@@ -159,6 +159,11 @@ class NaturalModes(Facts):
                 return value_at(self.system, column)
         return None
 
+    @property
+    def teeth_of_reference(self) -> float | None:
+        """`teeth`, but None where speeds are those of another shaft than the pinion's."""
+        return self.teeth if self.excited.reference in {"", GEARS[0]} else None
+
     def _facts(self) -> dict[str, str]:
         found = self.frequency_hz
         between = f", {found.min():.4g} to {found.max():.4g} Hz" if found.size else ""

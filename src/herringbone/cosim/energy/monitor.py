@@ -105,7 +105,7 @@ class EnergyMonitor(NamedTuple):
         row, column: pairs of an element that act on each other.
         stiffness, damping: -d force / d position and velocity for these [N/m, N.s/m, ...].
         rigid: projector of velocities onto those that turn no spring, (pairs, pairs).
-    springless: 1 for forces that depend on no position, (pairs,).
+        springless: 1 for forces that depend on no position, (pairs,).
         rule: integration over a step, of an iterated algorithm.
         slice: length of a slice of time [s].
         slices: ring of energies in slices of time, (slices, pairs + 3): added by each pair [J];

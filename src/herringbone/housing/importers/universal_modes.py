@@ -24,6 +24,7 @@ _DISPLACEMENT = (0, 1, 8)
 """Specific data types that can be displacements: unknown, general, displacement."""
 _MOTION = {*_DISPLACEMENT, 11, 12}
 """And velocity and acceleration, of which a mode could be made, too."""
+_TRANSLATIONS = 3
 _CONJUGATE = 1e-4
 """Difference of an eigenvalue and its conjugate, over its size, that rounding of a file makes."""
 
@@ -107,10 +108,8 @@ def _damping(viscous: float, hysteretic: float) -> float:
 
 
 def _check_size(shape: np.ndarray, labels: np.ndarray, where: str) -> None:
-    if shape.shape != (labels.size, 3):
-        raise ResourceError(
-            f"{where}: {labels.size} nodes have {shape.size} values, not three translations each"
-        )
+    if len(shape) != labels.size:
+        raise ResourceError(f"{where}: {labels.size} nodes, {len(shape)} values")
 
 
 def _mode_55(item: Mapping[str, Any]) -> Mode:
@@ -139,7 +138,10 @@ def _mode_2414(item: Mapping[str, Any]) -> Mode:
     if item["dataset_location"] != 1 or item["data_type"] not in {2, 4}:
         raise ResourceError(f"{where}: data set 2414 must hold real data at nodes")
     labels = np.asarray(item["node_nums"]).astype(int)
-    shape = np.array([values[:3] for values in item["data_at_node"]])
+    values = item["data_at_node"]
+    if few := [n for n, found in zip(labels, values, strict=False) if len(found) < _TRANSLATIONS]:
+        raise ResourceError(f"{where}: node {few[0]} has fewer than three values")
+    shape = np.array([found[:_TRANSLATIONS] for found in values])
     _check_size(shape, labels, where)
     mass = check_modal_mass(item["record12_field4"], where)
     zeta = _damping(item["record12_field5"], item["record12_field6"])

@@ -114,6 +114,8 @@ def _strongest(found: NaturalModes, axes: Axes) -> float:
 
 def _mesh_crossings(found: NaturalModes, axes: Axes, orders: tuple[int, ...]) -> None:
     """Circles where mesh orders cross modes that answer to them."""
+    if found.teeth_of_reference is None:
+        return
     speed, highest = axes.get_xlim()[1], axes.get_ylim()[1]
     crossings = found.crossings(orders, speed)
     crossings = crossings[crossings["frequency"] <= highest]

@@ -48,7 +48,7 @@ class Label(NamedTuple):
 
 def rays_of(found: NaturalModes, orders: Sequence[int]) -> list[Ray]:
     """Orders of the mesh, and those of other parts."""
-    teeth = found.teeth
+    teeth = found.teeth_of_reference
     mesh = [] if teeth is None else [Ray("", mesh_label(k), k * teeth / 60.0) for k in orders]
     return [*mesh, *(Ray(e.part, f"{e.order:.4g}", e.slope) for e in found.excited.orders)]
 

@@ -53,15 +53,14 @@ def started_content(fmu: Path, values: Values) -> tuple[str, ...]:
 
 
 def own_step(fmu: Path) -> float:
-    """Step that an FMU proposes for experiments [s], or that of trials."""
-    return proposed_step(fmu) or _STEP
+    """Step that an FMU proposes for experiments [s], or its inner one, or that of trials."""
+    return proposed_step(fmu) or inner_step(fmu) or _STEP
 
 
 def proposed_step(fmu: Path) -> float | None:
-    """Step that an FMU proposes for experiments, else its `inner_step` [s]; None: neither."""
+    """Step that an FMU proposes for experiments [s]; None if it proposes none."""
     experiment = read_fmu(fmu).defaultExperiment
-    proposed = experiment.stepSize if experiment else None
-    return float(proposed) if proposed else inner_step(fmu)
+    return float(experiment.stepSize) if experiment and experiment.stepSize else None
 
 
 def inner_step(fmu: Path) -> float | None:

@@ -17,10 +17,10 @@ ZOOM = 0.011
 """A padded spectrum shows a line at most 1 % low."""
 
 
-def spectrum_of(mesh, orders, duration=DURATION):
-    time = np.arange(round(duration * RATE)) / RATE
+def spectrum_of(mesh, orders, duration=DURATION, rate=RATE):
+    time = np.arange(round(duration * rate)) / rate
     signal = sum(a * np.cos(2.0 * np.pi * k * mesh * time + k) for k, a in orders.items())
-    return amplitude_spectrum(signal[:, None], 1.0 / RATE, PADDING)
+    return amplitude_spectrum(signal[:, None], 1.0 / rate, PADDING)
 
 
 def with_mesh_orders(step, orders):
@@ -57,6 +57,22 @@ def test_folds_at_lower_orders_are_hidden():
     assert hidden(spectrum_of(400.0, {1: 700.0, 22: 0.5}), 400.0, 3000.0) == 0.0
     assert hidden(spectrum_of(400.0, {1: 700.0, 22: 5.0}, 0.03), 400.0, 3000.0) == 0.0
     assert hidden(spectrum_of(MESH, {1: 700.0, 10: 20.0}), MESH, 3000.0) == 0.0
+
+
+def test_orders_of_shafts_are_no_folds():
+    """All of the pinion, of 27 teeth, up to 3 kHz: 20000 - 42 * 495.9 Hz lies at its order 45.1."""
+    mesh, turn = 495.9, 495.9 / 27
+    of_shaft = {1: 700.0, **{k / 27: 5.0 for k in range(1, 164) if k % 27}}
+    seen = spectrum_of(mesh, of_shaft, 0.8)
+    assert folds(seen, mesh, 3000.0)
+    assert not folds(seen, mesh, 3000.0, (turn,))
+    (found,) = folds(spectrum_of(mesh, {1: 700.0, 42: 5.0}, 0.8), mesh, 3000.0, (turn, turn / 3.0))
+    assert found.orders == (42,)
+
+
+def test_nothing_is_hidden_where_nothing_folds():
+    """Orders 6 and 7 of 7600 Hz show at 4400 and 3200 Hz."""
+    assert hidden(spectrum_of(7600.0, {1: 700.0, 3: 300.0}, rate=50e3), 7600.0, 3000.0) == 0.0
 
 
 @pytest.mark.parametrize(

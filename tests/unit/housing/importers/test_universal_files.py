@@ -172,10 +172,13 @@ def test_uff_2414_to_its_digits(pyuff, write_uff, seats, model):
 def test_modes_with_two_values_a_node_are_refused(pyuff, write_uff, seats, model):
     frequency, shapes = modes_of(model)
     path = write_uff()
-    with path.open("a") as file:
-        file.write("\n".join(text_2414(frequency, shapes[:, :2])) + "\n")
-    message = refusal(lambda: read_uff(path, read_seats(seats)))
-    assert f"mode 1: {NODES} nodes have {2 * NODES} values, not three translations each" in message
+    whole = path.read_text()
+    modes = "\n".join(text_2414(frequency, shapes[:, :2])) + "\n"
+    last = modes.splitlines()[-2]
+    for text, node in ((modes, 1), (modes.replace(last, last + last[:13], 1), 1)):
+        path.write_text(whole + text)
+        message = refusal(lambda: read_uff(path, read_seats(seats)))
+        assert f"mode 1: node {node} has fewer than three values" in message
 
 
 def test_bad_uff(pyuff, write_uff, seats, model):

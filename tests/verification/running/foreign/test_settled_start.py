@@ -112,7 +112,7 @@ TURNING = [
 ]
 
 
-@pytest.mark.parametrize("values", [{}, {"flywheel.speed": 60.0}])
+@pytest.mark.parametrize("values", [{}, {"flywheel.speed": 0.0}, {"flywheel.speed": 60.0}])
 def test_a_housing_leaves_the_speed_at_which_torques_balance(tmp_path, housing, values):
     """At 120 and 40 rad/s, teeth being 27 and 81, both give what they nominally do.
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from herringbone.analysis.asked import mesh_forces
-from herringbone.analysis.figures.folds import folds, hidden
+from herringbone.analysis.figures.folds import folds, hidden, turns_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, PADDING, amplitude_spectrum
 from herringbone.core.frequencies import HIGHEST
@@ -56,7 +56,7 @@ def _of_high_orders(result: Result, gear: str, frequency: float) -> Iterator[str
         return
     signals = result.data[columns].to_numpy()[part.rows]
     spectrum = amplitude_spectrum(signals, part.sample_step, PADDING)
-    if found := folds(spectrum, frequency, HIGHEST):
+    if found := folds(spectrum, frequency, HIGHEST, turns_of(result, frequency, gear)):
         orders = " and ".join(map(str, found[0].orders[:2]))
         where = (
             f"in spectra, the largest is {orders} at {found[0].frequency:.0f} Hz, "
