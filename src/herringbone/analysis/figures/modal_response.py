@@ -143,6 +143,21 @@ def modal_velocity(
     return z.real - zeta / np.sqrt(1.0 - zeta**2) * z.imag
 
 
+def recorded_motion(
+    result: Result, housing: ModalHousing, step: float, part: str = ""
+) -> np.ndarray:
+    """Velocities (n, modes) [kg^1/2 m/s] of the oscillators at the records of a run.
+
+    Args:
+        result: with equidistant records.
+        housing: modal data.
+        step: between records [s].
+        part: see `seat_forces`, whose errors are raised.
+    """
+    start = moving_start(result, housing, part)
+    return modal_velocity(housing, seat_forces(result, part), step, start)
+
+
 def moving_start(result: Result, housing: ModalHousing, part: str = "") -> np.ndarray | None:
     """Oscillators (modes,) at the first record of what a long run has left in memory.
 

@@ -21,9 +21,8 @@ import numpy as np
 
 from herringbone.analysis.figures.modal_response import (
     housing_of,
-    modal_velocity,
     modal_velocity_amplitudes,
-    moving_start,
+    recorded_motion,
     seat_forces,
 )
 from herringbone.analysis.figures.operating_point import SteadyPart, steady_part
@@ -163,8 +162,7 @@ def _estimate(
     result: Result, housing: ModalHousing, part: str, steady: SteadyPart
 ) -> RadiatedPower:
     gram = np.asarray(housing.gram)  # it is there: see above
-    forces, start = seat_forces(result, part), moving_start(result, housing, part)
-    velocity = modal_velocity(housing, forces, steady.sample_step, start)[steady.rows]
+    velocity = recorded_motion(result, housing, steady.sample_step, part)[steady.rows]
     squares, directions = np.linalg.eigh(gram)
     surface = velocity @ (directions * np.sqrt(np.maximum(squares, 0.0)))
     spectrum = amplitude_spectrum(surface, steady.sample_step)

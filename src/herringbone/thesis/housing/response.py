@@ -7,7 +7,7 @@ import pandas as pd
 from scipy.integrate import cumulative_trapezoid
 
 from herringbone.analysis.anatomy import value_at
-from herringbone.analysis.figures.modal_response import modal_velocity, seat_forces
+from herringbone.analysis.figures.modal_response import recorded_motion
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.components.registry import component
 from herringbone.housing import SEAT_DOFS, ModalHousing, read_housing
@@ -91,7 +91,7 @@ def thesis_procedure(deviation: float) -> tuple[pd.DataFrame, pd.DataFrame]:
     time = result.data["time"].to_numpy()
     step = float(time[1] - time[0])
     housing = four_modes()
-    modal = modal_velocity(housing, seat_forces(result), step)
+    modal = recorded_motion(result, housing, step)
     velocities = modal @ housing.seat_shapes.T
     unit_vectors = directions()
     chosen = slice(int(np.searchsorted(time, WINDOW[0] - _LEAST)), None, round(SAMPLE / step))

@@ -13,12 +13,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from herringbone.analysis.asked import signal
-from herringbone.analysis.figures.modal_response import (
-    housing_of,
-    modal_velocity,
-    moving_start,
-    seat_forces,
-)
+from herringbone.analysis.figures.modal_response import housing_of, recorded_motion, seat_forces
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.remembered_figures import figure_of
 from herringbone.analysis.figures.sensing.lines import Felt, SensorLine, sensor_lines
@@ -160,8 +155,7 @@ def _motion(result: Result, part: str) -> tuple[ModalHousing, np.ndarray]:
         raise ParameterError("the run left too few rows, or diverged")
     time = result.data[TIME].to_numpy()
     step = float(time[-1] - time[0]) / (time.size - 1)
-    start = moving_start(result, housing, part)
-    return housing, modal_velocity(housing, seat_forces(result, part), step, start)
+    return housing, recorded_motion(result, housing, step, part)
 
 
 def _figures(

@@ -13,12 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.figures.modal_response import (
-    housing_of,
-    modal_velocity,
-    moving_start,
-    seat_forces,
-)
+from herringbone.analysis.figures.modal_response import housing_of, recorded_motion
 from herringbone.components.registry import component_for
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Role
@@ -203,6 +198,5 @@ def sensor_velocity(
             "takes data with sensors, as 'herringbone housing build' makes them"
         )
     step = float(np.diff(result.data[TIME].to_numpy()[:2])[0])
-    start = moving_start(result, housing, part)
-    modal = modal_velocity(housing, seat_forces(result, part), step, start)
+    modal = recorded_motion(result, housing, step, part)
     return modal @ np.array([housing.shape(name, axis) for name in sensors]).T
