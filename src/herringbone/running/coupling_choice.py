@@ -21,7 +21,7 @@ from herringbone.result.budget import BudgetRow
 from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.foreign.linear_start import turned_back, under_load
 from herringbone.running.foreign.speeding_up import speeding_up
-from herringbone.running.foreign.started import inner_step, proposed_step
+from herringbone.running.foreign.started import declared_steps
 from herringbone.running.foreign.surrogates import surrogates_of
 from herringbone.running.loading import instances
 from herringbone.running.remembered_answers import bond_of, stability_warning
@@ -145,7 +145,7 @@ def _other_lengths(system: System, parts: Sequence[Part], step: float) -> Iterat
         fmu = next((p.fmu for p in system.parts if p.name == part.name and p.foreign), None)
         if not fmu:
             continue
-        proposed, inner = proposed_step(fmu), inner_step(fmu)
+        proposed, inner, _ = declared_steps(fmu)
         if part.one_step and proposed and not math.isclose(proposed, step):
             yield (
                 f"{part.name} takes steps of one length only, and proposes {proposed:g} s: if it "

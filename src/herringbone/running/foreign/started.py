@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 from herringbone.core import HerringboneError
 from herringbone.core.part import STRUCTURE, Part
@@ -52,23 +53,38 @@ def started_content(fmu: Path, values: Values) -> tuple[str, ...]:
     return fmu.stem, "own units", digest_of_file(fmu), *values_of(values)
 
 
+class DeclaredSteps(NamedTuple):
+    """What an FMU declares of its communication steps.
+
+    Attributes:
+        proposed: for experiments [s]; None if it proposes none.
+        inner: `fixedInternalStepSize` of FMI 3.0, of which steps are multiples [s]; None: not said.
+        one_length: all must have one length.
+    """
+
+    proposed: float | None
+    inner: float | None
+    one_length: bool
+
+    @property
+    def first(self) -> float | None:
+        """What is tried first [s]; None if nothing is declared."""
+        return self.proposed or self.inner
+
+
+def declared_steps(fmu: Path) -> DeclaredSteps:
+    """Of a file; raises FmuError."""
+    model = read_fmu(fmu)
+    abilities, experiment = model.coSimulation, model.defaultExperiment
+    proposed = experiment.stepSize if experiment else None
+    inner = abilities.fixedInternalStepSize
+    return DeclaredSteps(
+        float(proposed) if proposed else None,
+        float(inner) if inner else None,
+        not abilities.canHandleVariableCommunicationStepSize,
+    )
+
+
 def own_step(fmu: Path) -> float:
-    """Step that an FMU proposes for experiments [s], or its inner one, or that of trials."""
-    return proposed_step(fmu) or inner_step(fmu) or _STEP
-
-
-def proposed_step(fmu: Path) -> float | None:
-    """Step that an FMU proposes for experiments [s]; None if it proposes none."""
-    experiment = read_fmu(fmu).defaultExperiment
-    return float(experiment.stepSize) if experiment and experiment.stepSize else None
-
-
-def inner_step(fmu: Path) -> float | None:
-    """`fixedInternalStepSize` of FMI 3.0, of which communication steps are multiples [s]."""
-    declared = read_fmu(fmu).coSimulation.fixedInternalStepSize
-    return float(declared) if declared else None
-
-
-def takes_one_step(fmu: Path) -> bool:
-    """True if an FMU declares that its steps must all have one length."""
-    return not read_fmu(fmu).coSimulation.canHandleVariableCommunicationStepSize
+    """The first one of an FMU's declared steps [s], or that of trials."""
+    return declared_steps(fmu).first or _STEP

@@ -25,12 +25,7 @@ from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
 from herringbone.result.result import Result
 from herringbone.running.coupled import Coupled, coupled
 from herringbone.running.coupling_choice import Asked
-from herringbone.running.foreign.started import (
-    USUAL_STEPS,
-    inner_step,
-    proposed_step,
-    takes_one_step,
-)
+from herringbone.running.foreign.started import USUAL_STEPS, declared_steps
 from herringbone.running.loading import in_one_run
 from herringbone.running.operating.lean import with_row
 from herringbone.running.reporting.progress import Progress
@@ -126,9 +121,9 @@ def searched(
 
 def first_steps(system: System, scene: Scene) -> list[float]:
     """Steps that are tried first, in this order, until one does [s]; the longest, if all may do."""
-    fmus = [part.fmu for part in system.parts if part.foreign and part.fmu]
-    single = [fmu for fmu in fmus if takes_one_step(fmu)]
-    proposed = [step for fmu in single if (step := proposed_step(fmu) or inner_step(fmu))]
+    declared = (declared_steps(part.fmu) for part in system.parts if part.foreign and part.fmu)
+    single = [steps for steps in declared if steps.one_length]
+    proposed = [steps.first for steps in single if steps.first]
     usual = USUAL_STEPS if single else ()
     steps = (*proposed, _longest_step(system, scene), *usual)
     return [step for step in dict.fromkeys(steps) if step <= scene.t_end]
