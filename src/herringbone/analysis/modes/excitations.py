@@ -18,7 +18,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.modes.linearised import Linearised
 from herringbone.analysis.modes.mesh_answer import undamped
 from herringbone.analysis.twin.condensed.equations import periodic_arguments
-from herringbone.core.declaring.roles import Role
+from herringbone.core.declaring.roles import GEARS, Role
 from herringbone.core.declaring.units import R_MIN
 
 _OTHER = 1e-9
@@ -111,7 +111,7 @@ def excitations(
             continue
         answer = _answer(rates, equations.c[at] @ right, left.conj().T @ equations.b[:, values[p]])
         orders[part, turns] = Excitation(part, float(1 / turns), ratio, answer)
-    reference = "pinion" if name in pairs else name
+    reference = GEARS[0] if name in pairs else name
     return Excitations(reference, speed, tuple(orders.values()), tuple(apart))
 
 

@@ -15,6 +15,8 @@ from herringbone.core.caching.files import keep, kept
 from herringbone.core.places.paths import cache_root
 from herringbone.core.process.streams import write_line
 
+A_WHILE = "this may take a while"
+"""How long, where nothing is known."""
 _PATIENCE = 2.0
 """Seconds for which nothing need be said."""
 _MINUTE = 60.0
@@ -168,7 +170,7 @@ class _Activity:
 
 @contextmanager
 def activity(
-    what: str, note: str = "", *, takes: str = "this may take a while", shown: bool = False
+    what: str, note: str = "", *, takes: str = A_WHILE, shown: bool = False
 ) -> Iterator[None]:
     """Do something that may take more than two seconds; if so, a line says it.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from herringbone.core import ParameterError
+from herringbone.core.process.activity import A_WHILE
 from herringbone.core.process.one_thread import one_blas_thread
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
@@ -116,7 +117,7 @@ class Method:
     mesh: Callable[[Task, Progress], SliceMesh | PointMesh]
     accuracy: Accuracy
     calibrated: bool = True
-    takes: str = "this may take a while"
+    takes: str = A_WHILE
 
 
 _COUPLED = Accuracy(mean=0.04, share=0.15, floor=0.0003)
